@@ -1,0 +1,209 @@
+//! Reference centrelines with their frames, ξ from 0 to 1.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+use serde::Deserialize;
+
+use crate::error::{Error, SceneError};
+use crate::interpolation::Pose;
+use crate::rotation::rotation_matrix;
+use crate::scene::{Curve, CurveShape};
+
+/// A curve that can be evaluated.
+#[derive(Clone, Debug)]
+pub enum Centreline {
+    /// r = start + ξ (end − start), constant frame.
+    Line {
+        /// Start [m].
+        start: Vector3<f64>,
+        /// End − start [m].
+        span: Vector3<f64>,
+        /// A_IK.
+        rotation: Matrix3<f64>,
+    },
+    /// r = (R sin φ, R (1 − cos φ), 0), φ = angle ξ.
+    Arc {
+        /// R [m].
+        radius: f64,
+        /// Opening angle [rad].
+        angle: f64,
+    },
+    /// r = (R sin φ, −R cos φ, R c (φ − phase)), φ = phase + 2π coils ξ, eq. (19) with a phase.
+    Helix {
+        /// Number of coils.
+        coils: f64,
+        /// R [m].
+        radius: f64,
+        /// c = pitch/(2πR).
+        slope: f64,
+        /// Angle at which it starts [rad].
+        phase: f64,
+    },
+    /// Given poses at evenly spaced ξ.
+    Poses(Vec<Pose>),
+}
+
+/// A centreline with its place in space.
+#[derive(Clone, Debug)]
+pub struct PlacedCurve {
+    centreline: Centreline,
+    origin: Vector3<f64>,
+    rotation: Matrix3<f64>,
+}
+
+impl PlacedCurve {
+    /// From the validated scene; reads the file of given poses.
+    pub fn new(curve: &Curve, key: &str) -> Result<Self, Error> {
+        let centreline = match &curve.shape {
+            CurveShape::Line { length: Some(length), .. } => Centreline::Line {
+                start: Vector3::zeros(),
+                span: Vector3::x() * *length,
+                rotation: Matrix3::identity(),
+            },
+            CurveShape::Line { from, to, normal, .. } => {
+                let start = Vector3::from(from.unwrap_or_default());
+                let span = Vector3::from(to.unwrap_or_default()) - start;
+                Centreline::Line { start, span, rotation: line_frame(&span, normal.map(Vector3::from)) }
+            }
+            CurveShape::Arc { radius, angle } => Centreline::Arc { radius: *radius, angle: *angle },
+            CurveShape::Helix { coils, radius, pitch, phase } => Centreline::Helix {
+                coils: *coils,
+                radius: *radius,
+                slope: pitch / (TAU * radius),
+                phase: *phase,
+            },
+            CurveShape::Poses { file } => Centreline::Poses(read_poses(file, key)?),
+        };
+        Ok(Self {
+            centreline,
+            origin: Vector3::from(curve.origin),
+            rotation: rotation_matrix(&Vector4::from(curve.orientation)),
+        })
+    }
+
+    /// The pose at ξ; between given poses the nearest one's rotation and a straight line, a start for the fit.
+    pub fn pose(&self, xi: f64) -> Pose {
+        let local = self.centreline.pose(xi);
+        Pose {
+            position: self.origin + self.rotation * local.position,
+            rotation: self.rotation * local.rotation,
+        }
+    }
+
+    /// The same curve, moved by −`by`.
+    pub fn relative_to(mut self, by: &Vector3<f64>) -> Self {
+        self.origin -= by;
+        self
+    }
+
+    /// The given poses, if that is what the curve is made of.
+    pub fn given_poses(&self) -> Option<usize> {
+        match &self.centreline {
+            Centreline::Poses(poses) => Some(poses.len()),
+            _ => None,
+        }
+    }
+
+    /// The angle ∫ ‖κ⁰‖ ds by which the frame turns from ξ = 0 to 1, where it is known in advance.
+    pub fn total_turn(&self) -> f64 {
+        match self.centreline {
+            Centreline::Line { .. } | Centreline::Poses(_) => 0.0,
+            Centreline::Arc { angle, .. } => angle,
+            // ‖κ⁰‖ L = √(1 + c²)/(R (1 + c²)) · R √(1 + c²) 2π n.
+            Centreline::Helix { coils, .. } => TAU * coils,
+        }
+    }
+}
+
+impl Centreline {
+    fn pose(&self, xi: f64) -> Pose {
+        match self {
+            Self::Line { start, span, rotation } => Pose { position: start + span * xi, rotation: *rotation },
+            Self::Arc { radius, angle } => {
+                let (sin, cos) = (angle * xi).sin_cos();
+                // 1 − cos φ = 2 sin² ½φ keeps the digits of a flat arc.
+                let versine = 2.0 * (0.5 * angle * xi).sin().powi(2);
+                Pose {
+                    position: Vector3::new(radius * sin, radius * versine, 0.0),
+                    rotation: Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0),
+                }
+            }
+            Self::Helix { coils, radius, slope, phase } => {
+                let turn = TAU * coils * xi;
+                let (sin, cos) = (phase + turn).sin_cos();
+                let stretch = 1.0_f64.hypot(*slope);
+                Pose {
+                    position: *radius * Vector3::new(sin, -cos, slope * turn),
+                    rotation: Matrix3::from_columns(&[
+                        Vector3::new(cos, sin, *slope) / stretch,
+                        Vector3::new(-sin, cos, 0.0),
+                        Vector3::new(-slope * cos, -slope * sin, 1.0) / stretch,
+                    ]),
+                }
+            }
+            Self::Poses(poses) => {
+                let place = xi.clamp(0.0, 1.0) * (poses.len() - 1) as f64;
+                let before = (place.floor() as usize).min(poses.len() - 2);
+                let part = place - before as f64;
+                let (a, b) = (&poses[before], &poses[before + 1]);
+                Pose {
+                    position: a.position + (b.position - a.position) * part,
+                    rotation: if part < 0.5 { a.rotation } else { b.rotation },
+                }
+            }
+        }
+    }
+}
+
+/// (tangent, normal projected, binormal); the default normal is e_z × tangent, or +e_y where that vanishes.
+fn line_frame(span: &Vector3<f64>, normal: Option<Vector3<f64>>) -> Matrix3<f64> {
+    let tangent = span.normalize();
+    let wanted = normal.unwrap_or_else(|| {
+        let default = Vector3::z().cross(&tangent);
+        if default.norm() > 1e-9 { default } else { Vector3::y() }
+    });
+    let projected = wanted - tangent * tangent.dot(&wanted);
+    let normal = projected.normalize();
+    Matrix3::from_columns(&[tangent, normal, tangent.cross(&normal)])
+}
+
+/// One line of a pose file.
+#[derive(Deserialize)]
+struct PoseRow {
+    x: f64,
+    y: f64,
+    z: f64,
+    qw: f64,
+    qx: f64,
+    qy: f64,
+    qz: f64,
+}
+
+/// Reads `x,y,z,qw,qx,qy,qz`.
+fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
+    let wrong = |problem: String| {
+        SceneError::new(format!("{key}.file"), problem, "a CSV file with the header x,y,z,qw,qx,qy,qz and finite numbers")
+    };
+    let text = std::fs::read_to_string(file)
+        .map_err(|source| Error::File { action: "read", path: file.to_path_buf(), source })?;
+    let mut poses = Vec::new();
+    for (index, row) in csv::Reader::from_reader(text.as_bytes()).deserialize::<PoseRow>().enumerate() {
+        let line = index + 2;
+        let row = row.map_err(|error| wrong(format!("{} is malformed: {error}", file.display())))?;
+        let quaternion = Vector4::new(row.qw, row.qx, row.qy, row.qz);
+        let position = Vector3::new(row.x, row.y, row.z);
+        if !position.iter().chain(quaternion.iter()).all(|x| x.is_finite()) {
+            return Err(wrong(format!("line {line} of {} holds a number that is not finite", file.display())).into());
+        }
+        if quaternion.amax() == 0.0 {
+            return Err(wrong(format!("line {line} of {} holds a zero quaternion", file.display())).into());
+        }
+        poses.push(Pose { position, rotation: rotation_matrix(&quaternion) });
+    }
+    if poses.len() < 2 {
+        return Err(wrong(format!("{} holds {} poses; a rod needs two at least", file.display(), poses.len())).into());
+    }
+    Ok(poses)
+}

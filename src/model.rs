@@ -1,0 +1,320 @@
+//! Scene → Model: nodes, numbering, supports, loads and probes; frozen afterwards.
+
+mod free_motion;
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::curve::PlacedCurve;
+use crate::element::{LineLoad, Stiffness};
+use crate::error::{Error, SceneError};
+use crate::interpolation::{HalfTurn, Pose};
+use crate::joint::Support;
+use crate::load::{Course, PointLoad};
+use crate::rod::{NODE_TOLERANCE, RodElements, RodReference, rod_elements};
+use crate::scene::{Basis, EulerSequence, JointKind, LoadKind, Reference, Scene, parse_point};
+use crate::section::{mass_per_length, stiffness};
+use crate::state::State;
+
+/// A rod ready to be solved. Positions are relative to the model's origin.
+#[derive(Debug)]
+pub struct RodModel {
+    /// Its name.
+    pub name: String,
+    /// Number of elements.
+    pub elements: usize,
+    /// Polynomial degree p.
+    pub degree: usize,
+    /// Number of nodes, p · elements + 1.
+    pub nodes: usize,
+    /// Reference length of the discrete rod [m].
+    pub length: f64,
+    pub(crate) kernel: Box<dyn RodElements>,
+    pub(crate) stiffness: Stiffness,
+    pub(crate) reference: RodReference,
+    /// Its nodes among those of the model.
+    pub(crate) range: Range<usize>,
+    /// Held nodes, ascending.
+    pub(crate) supports: Vec<Support>,
+    /// Point loads, ascending by node.
+    pub(crate) point_loads: Vec<PointLoad>,
+    pub(crate) line_loads: Vec<(LineLoad, Course)>,
+    /// Shortest element, J_e [m].
+    pub(crate) element_length: f64,
+}
+
+/// A joint to the ground, as the results see it.
+#[derive(Clone, Debug)]
+pub(crate) struct GroundJoint {
+    pub rod: usize,
+    /// Index among the rod's supports.
+    pub support: usize,
+    /// +1 if the rod is the second of the pair, −1 if the ground is.
+    pub sign: f64,
+}
+
+/// A probe, resolved.
+#[derive(Clone, Debug)]
+pub(crate) struct ProbeModel {
+    pub rod: usize,
+    pub xi: f64,
+    pub offset: Vector3<f64>,
+    pub angles: Option<EulerSequence>,
+}
+
+/// Everything a solve needs and nothing it changes.
+#[derive(Debug)]
+pub struct Model {
+    pub(crate) rods: Vec<RodModel>,
+    pub(crate) joints: Vec<GroundJoint>,
+    pub(crate) probes: Vec<ProbeModel>,
+    pub(crate) reference: State,
+    /// The start of the first rod; positions are kept relative to it, so that a scene far from the inertial
+    /// origin loses no digits.
+    pub(crate) origin: Vector3<f64>,
+    warnings: Vec<String>,
+}
+
+impl Model {
+    /// Validates the scene and builds the model; the fit (21) of reference configurations happens here.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        scene.validate()?;
+        let curves = scene
+            .rod
+            .iter()
+            .enumerate()
+            .map(|(i, rod)| PlacedCurve::new(&rod.curve, &format!("rod.{i}.curve")))
+            .collect::<Result<Vec<_>, _>>()?;
+        let origin = curves.first().map_or_else(Vector3::zeros, |curve| curve.pose(0.0).position);
+        let mut model = Self {
+            rods: Vec::new(),
+            joints: Vec::new(),
+            probes: Vec::new(),
+            reference: State::default(),
+            origin,
+            warnings: Vec::new(),
+        };
+        for (index, curve) in curves.into_iter().enumerate() {
+            model.add_rod(scene, index, &curve.relative_to(&origin))?;
+        }
+        for index in 0..scene.load.len() {
+            model.add_load(scene, index)?;
+        }
+        for rod in &mut model.rods {
+            rod.point_loads.sort_by_key(|load| load.node);
+        }
+        model.add_joints(scene)?;
+        for index in 0..scene.probe.len() {
+            model.add_probe(scene, index)?;
+        }
+        free_motion::refuse(&model)?;
+        Ok(model)
+    }
+
+    /// The rods.
+    pub fn rods(&self) -> impl Iterator<Item = &RodModel> {
+        self.rods.iter()
+    }
+
+    /// Number of scalar unknowns: 6 a node, less what the joints hold.
+    pub fn unknowns(&self) -> usize {
+        let held = |rod: &RodModel| rod.supports.iter().map(|support| 6 - support.freedom).sum::<usize>();
+        self.rods.iter().map(|rod| 6 * rod.nodes - held(rod)).sum()
+    }
+
+    /// Whether any load acts at load factor 0 already.
+    pub(crate) fn loaded_at_start(&self) -> bool {
+        let acts = |course: &Course| course.factor(0.0) != 0.0;
+        self.rods.iter().any(|rod| {
+            rod.point_loads.iter().any(|load| acts(&load.course)) || rod.line_loads.iter().any(|(_, c)| acts(c))
+        })
+    }
+
+    /// What the user should know about the model.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The pose of a rod at ξ ∈ [0, 1] with a lever in the section's basis, inertial.
+    pub fn pose(&self, state: &State, rod: usize, xi: f64, offset: &Vector3<f64>) -> Result<Pose, HalfTurn> {
+        let rod = &self.rods[rod];
+        let pose = rod.kernel.pose(&state.poses()[rod.range.clone()], xi)?;
+        Ok(Pose { position: self.origin + pose.position + pose.rotation * offset, rotation: pose.rotation })
+    }
+
+    fn add_rod(&mut self, scene: &Scene, index: usize, curve: &PlacedCurve) -> Result<(), SceneError> {
+        let rod = &scene.rod[index];
+        let key = |name: &str| format!("rod.{index}.{name}");
+        let kernel = rod_elements(rod.elements, rod.degree, rod.node_spacing, rod.interpolation, rod.quadrature)
+            .ok_or_else(|| SceneError::new(key("interpolation"), "has no such degree", "degree 1 for se3"))?;
+        let stiffness = stiffness(&rod.section, rod.material.as_ref())
+            .ok_or_else(|| SceneError::new(key("material"), "is incomplete", "two of E, G and ν"))?;
+        let positions = kernel.node_positions();
+        let widest = positions.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let few = |problem: String, elements: usize| {
+            SceneError::new(key("elements"), problem, format!("{elements} elements of degree {} or more", rod.degree))
+        };
+        let turn = widest * curve.total_turn();
+        if turn > 0.999 * std::f64::consts::PI {
+            let enough = (rod.elements as f64 * turn / (0.5 * std::f64::consts::PI)).ceil() as usize;
+            return Err(few(format!("lets neighbouring nodes be {turn:.3} rad apart, half a turn or more"), enough));
+        }
+        let mut state = State::from_poses(positions.iter().map(|&xi| curve.pose(xi)));
+        let samples = match (curve.given_poses(), rod.reference) {
+            (Some(poses), _) => Some(poses),
+            (None, Reference::Fit { samples }) => Some(samples),
+            (None, Reference::Nodes) => None,
+        };
+        if let Some(samples) = samples {
+            self.fit(&*kernel, &mut state, curve, samples, &key("reference"))?;
+        }
+        let line_loads = self.line_loads(scene, index);
+        let reference = kernel
+            .reference(state.poses(), !line_loads.is_empty())
+            .map_err(|e| few(format!("is too coarse: element {e} is degenerate"), 2 * rod.elements))?;
+        let q = kernel.points();
+        let lengths = reference.points.chunks_exact(q).map(|points| {
+            points.iter().map(|point| point.jacobian).sum::<f64>() / q as f64
+        });
+        let (length, element_length) = lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, x.min(least)));
+        let first = self.reference.poses().len();
+        self.rods.push(RodModel {
+            name: rod.name.clone(),
+            elements: rod.elements,
+            degree: rod.degree,
+            nodes: positions.len(),
+            length,
+            range: first..first + positions.len(),
+            kernel,
+            stiffness,
+            reference,
+            supports: Vec::new(),
+            point_loads: Vec::new(),
+            line_loads,
+            element_length,
+        });
+        for (pose, quaternion) in state.poses().iter().zip(state.quaternions()) {
+            self.reference.push(pose.position, *quaternion);
+        }
+        Ok(())
+    }
+
+    fn fit(
+        &mut self,
+        kernel: &dyn RodElements,
+        state: &mut State,
+        curve: &PlacedCurve,
+        samples: usize,
+        key: &str,
+    ) -> Result<(), SceneError> {
+        let nodes = state.poses().len();
+        if samples < nodes {
+            return Err(SceneError::new(
+                key,
+                format!("fits {nodes} nodes to {samples} samples, {} residuals for {} unknowns", 6 * samples, 6 * nodes),
+                format!("at least {nodes} samples"),
+            ));
+        }
+        let targets: Vec<Pose> = (0..samples).map(|j| curve.pose(j as f64 / (samples - 1) as f64)).collect();
+        kernel
+            .fit(state, &targets)
+            .map_err(|error| SceneError::new(key, format!("fit failed: {error}"), "more elements or smoother poses"))?;
+        Ok(())
+    }
+
+    /// Gravity and the line loads on a rod.
+    fn line_loads(&self, scene: &Scene, index: usize) -> Vec<(LineLoad, Course)> {
+        let rod = &scene.rod[index];
+        let mut result = Vec::new();
+        if let (Some(gravity), true) = (scene.gravity, rod.gravity)
+            && let Some(mass) = mass_per_length(&rod.section, rod.material.as_ref())
+        {
+            let force = Vector3::from(gravity) * mass;
+            result.push((LineLoad { force, ..LineLoad::default() }, Course::Ramp));
+        }
+        for load in scene.load.iter().filter(|load| load.on == rod.name) {
+            let value = Vector3::from(load.value);
+            let mut line = LineLoad::default();
+            match (load.kind, load.basis) {
+                (LoadKind::LineForce, Basis::Inertial) => line.force = value,
+                (LoadKind::LineForce, Basis::Body) => line.body_force = value,
+                (LoadKind::LineMoment, Basis::Inertial) => line.moment = value,
+                (LoadKind::LineMoment, Basis::Body) => line.body_moment = value,
+                (LoadKind::Force | LoadKind::Moment, _) => continue,
+            }
+            result.push((line, Course::new(load.time.as_ref(), Course::Ramp)));
+        }
+        result
+    }
+
+    fn add_load(&mut self, scene: &Scene, index: usize) -> Result<(), SceneError> {
+        let load = &scene.load[index];
+        if matches!(load.kind, LoadKind::Force | LoadKind::Moment) {
+            let (rod, node) = self.node(&load.on, &format!("load.{index}.on"))?;
+            self.rods[rod].point_loads.extend(PointLoad::new(node, load));
+        }
+        Ok(())
+    }
+
+    fn add_joints(&mut self, scene: &Scene) -> Result<(), SceneError> {
+        // Where each joint's support ended up after sorting: remembered by (rod, node).
+        let mut places = Vec::new();
+        for (index, joint) in scene.joint.iter().enumerate() {
+            let end = usize::from(joint.between[0] == "ground");
+            let (rod, node) = self.node(&joint.between[end], &format!("joint.{index}.between.{end}"))?;
+            let model = &mut self.rods[rod];
+            if model.supports.iter().any(|support| support.node == node) {
+                return Err(SceneError::new(
+                    format!("joint.{index}.between.{end}"),
+                    format!("holds `{}`, which another joint holds already", joint.between[end]),
+                    "one joint a node",
+                ));
+            }
+            let pose = &self.reference.poses()[model.range.start + node];
+            let point = joint.point.map_or(pose.position, |point| Vector3::from(point) - self.origin);
+            let axis = Vector3::from(joint.axis.unwrap_or([1.0, 0.0, 0.0]));
+            let kind: JointKind = joint.kind;
+            model.supports.push(Support::new(node, kind, pose, point, axis));
+            places.push((rod, node, if end == 1 { 1.0 } else { -1.0 }));
+        }
+        for rod in &mut self.rods {
+            rod.supports.sort_by_key(|support| support.node);
+        }
+        for (rod, node, sign) in places {
+            let support = self.rods[rod].supports.partition_point(|support| support.node < node);
+            self.joints.push(GroundJoint { rod, support, sign });
+        }
+        Ok(())
+    }
+
+    fn add_probe(&mut self, scene: &Scene, index: usize) -> Result<(), SceneError> {
+        let probe = &scene.probe[index];
+        let (rod, xi) = self.point(&probe.on, &format!("probe.{index}.on"))?;
+        let offset = Vector3::from(probe.offset.unwrap_or_default());
+        self.probes.push(ProbeModel { rod, xi, offset, angles: probe.angles });
+        Ok(())
+    }
+
+    /// `rod@ξ` as (index of the rod, ξ).
+    fn point(&self, on: &str, key: &str) -> Result<(usize, f64), SceneError> {
+        parse_point(on)
+            .and_then(|(name, xi)| Some((self.rods.iter().position(|rod| rod.name == name)?, xi)))
+            .ok_or_else(|| SceneError::new(key, format!("names no point of a rod: `{on}`"), "rod@ξ, ξ in [0, 1]"))
+    }
+
+    /// `rod@ξ` as (index of the rod, index of the node in it).
+    fn node(&self, on: &str, key: &str) -> Result<(usize, usize), SceneError> {
+        let (rod, xi) = self.point(on, key)?;
+        let positions = self.rods[rod].kernel.node_positions();
+        let distance = |node: &f64| (node - xi).abs();
+        let nearest = (0..positions.len()).min_by(|&a, &b| distance(&positions[a]).total_cmp(&distance(&positions[b])));
+        match nearest {
+            Some(node) if distance(&positions[node]) <= NODE_TOLERANCE => Ok((rod, node)),
+            _ => {
+                let nearest = nearest.map_or(0.0, |node| positions[node]);
+                Err(SceneError::new(key, format!("is no node of the rod: ξ = {xi}"), format!("a node; the nearest is ξ = {nearest}")))
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Newton's iteration for the equilibrium (16) at one load level, mixed or plain.
+//!
+//! The mixed iteration (Magisano, Leonetti & Garcea 2017) keeps a stress resultant s per quadrature point as an
+//! iterate of its own: the geometric tangent is built from s, the residual from the constitutive ŝ(q), and after a
+//! step s ← ŝ(q) + C ε′(q) δq with the old q. It is the mixed Hellinger–Reissner form with the stresses condensed
+//! out point by point; the solution is the same.
+
+use crate::assembly::{LoadLevel, RELATIVE_TOLERANCE, Residual, Workspace};
+use crate::model::Model;
+use crate::scene::NewtonKind;
+use crate::solution::{Statistics, StopReason};
+use crate::state::State;
+
+/// The convergence test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Test {
+    /// max |residual| below a number, in mixed units.
+    Absolute(f64),
+    /// Forces and moments against their own scale and rounding floor, τ = 1e-9.
+    Relative,
+}
+
+impl Test {
+    /// The residual in the units of the test.
+    pub fn measure(&self, residual: &Residual) -> f64 {
+        match self {
+            Self::Absolute(_) => residual.absolute,
+            Self::Relative => residual.relative,
+        }
+    }
+
+    /// What it is held against.
+    pub fn tolerance(&self) -> f64 {
+        match self {
+            Self::Absolute(tolerance) => *tolerance,
+            Self::Relative => RELATIVE_TOLERANCE,
+        }
+    }
+}
+
+/// Settings of one iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newton {
+    /// Mixed or plain.
+    pub kind: NewtonKind,
+    /// When to stop.
+    pub test: Test,
+    /// Largest number of steps.
+    pub max_iterations: usize,
+}
+
+/// An iteration that converged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Converged {
+    /// Steps taken.
+    pub iterations: usize,
+    /// The accepted residual, in the units of the test.
+    pub residual: f64,
+}
+
+/// An iteration that did not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotConverged {
+    /// Steps taken.
+    pub iterations: usize,
+    /// The last finite residual, in the units of the test.
+    pub residual: f64,
+    /// What ended it.
+    pub reason: StopReason,
+}
+
+impl Newton {
+    /// Moves `state` (and the stresses in the workspace) to equilibrium.
+    pub fn solve(
+        &self,
+        model: &Model,
+        level: &LoadLevel,
+        state: &mut State,
+        work: &mut Workspace,
+        statistics: &mut Statistics,
+    ) -> Result<Converged, NotConverged> {
+        let mut residual = f64::MAX;
+        let mut iterations = 0;
+        let stop = |reason, iterations, residual| NotConverged { iterations, residual, reason };
+        loop {
+            work.evaluate(model, state, level).map_err(|reason| stop(reason, iterations, residual))?;
+            let now = self.test.measure(&work.residual(model, state));
+            if !now.is_finite() {
+                return Err(stop(StopReason::Singular, iterations, residual));
+            }
+            residual = now;
+            if residual <= self.test.tolerance() {
+                return Ok(Converged { iterations, residual });
+            }
+            if iterations == self.max_iterations {
+                return Err(stop(StopReason::Iterations, iterations, residual));
+            }
+            if self.kind == NewtonKind::Displacement {
+                work.reset_stresses();
+            }
+            iterations += 1;
+            statistics.newton_iterations += 1;
+            statistics.factorizations += 1;
+            work.factorize(model, state, level)
+                .and_then(|()| work.solve(model, state))
+                .and_then(|()| match self.kind {
+                    NewtonKind::Mixed => work.advance_stresses(model, state),
+                    NewtonKind::Displacement => Ok(()),
+                })
+                .map_err(|reason| stop(reason, iterations, residual))?;
+            work.update(model, state);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What a solve returns: rows for every accepted increment, a few shapes, and counted work.
+
+use thiserror::Error;
+
+/// The pose of a probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbePose {
+    /// Position in the inertial basis [m].
+    pub position: [f64; 3],
+    /// Unit quaternion `[w, x, y, z]`; w ≥ 0 in the first row, continuous along the rows.
+    pub quaternion: [f64; 4],
+    /// (α, β, γ) of A = R_x(γ) R_y(β) R_z(α), unwrapped along the rows [rad]; only where the probe asks.
+    pub angles: Option<[f64; 3]>,
+}
+
+/// One accepted increment; the first row is the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The load factor.
+    pub parameter: f64,
+    /// One pose for every probe of the scene, in its order.
+    pub probes: Vec<ProbePose>,
+    /// For every joint (f, m) [N, N m], inertial, at its point, acting on the second of the pair.
+    pub reactions: Vec<[f64; 6]>,
+}
+
+/// A deformed shape, for plots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The load factor.
+    pub parameter: f64,
+    /// For every rod, points of its centreline from ξ = 0 to ξ = 1 [m].
+    pub rods: Vec<Vec<[f64; 3]>>,
+}
+
+/// Counted work; integers are the same from run to run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Accepted increments.
+    pub increments: usize,
+    /// Increments that failed and were retried with a smaller one.
+    pub rejected: usize,
+    /// Newton iterations, those of rejected increments included.
+    pub newton_iterations: usize,
+    /// Most Newton iterations in one accepted increment.
+    pub most_iterations: usize,
+    /// Factorisations of the tangent, those of rejected increments included.
+    pub factorizations: usize,
+    /// Largest residual that was accepted, in the units of the active test.
+    pub residual: f64,
+}
+
+/// The solution, or as much of it as converged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solution {
+    /// Number of scalar unknowns.
+    pub unknowns: usize,
+    /// The start and every accepted increment.
+    pub rows: Vec<Row>,
+    /// The start, the end and a few shapes between them.
+    pub shapes: Vec<Shape>,
+    /// Counted work.
+    pub statistics: Statistics,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Why a solve stopped early.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SolveError {
+    /// Newton's iteration did not reach the tolerance.
+    #[error(
+        "no equilibrium found at load factor {load_factor}: after {iterations} iterations the residual is {residual:.3e}, \
+         the tolerance {tolerance:.3e} ({reason}); {increments} increments converged, up to load factor {reached}"
+    )]
+    NotConverged {
+        /// The load factor that was tried.
+        load_factor: f64,
+        /// Iterations spent on it.
+        iterations: usize,
+        /// The last finite residual, in the units of the active test.
+        residual: f64,
+        /// What it was held against.
+        tolerance: f64,
+        /// What ended the iteration.
+        reason: StopReason,
+        /// Increments that had converged before.
+        increments: usize,
+        /// The largest load factor that converged.
+        reached: f64,
+    },
+}
+
+/// What ended an iteration that did not converge.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum StopReason {
+    /// Too many iterations.
+    #[error("the largest number of iterations is spent")]
+    Iterations,
+    /// A number overflowed, or the tangent is singular.
+    #[error("the tangent is singular or a number overflowed")]
+    Singular,
+    /// Neighbouring nodes are half a turn apart, where the relative rotation has no logarithm.
+    #[error("element {element} of rod {rod} is turned by half a turn between its nodes")]
+    HalfTurn {
+        /// Index of the rod.
+        rod: usize,
+        /// Index of the element.
+        element: usize,
+    },
+}
+
+/// An early stop with what had converged before it.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{error}")]
+pub struct SolveFailure {
+    /// Why.
+    pub error: SolveError,
+    /// What had converged.
+    pub partial: Solution,
+}

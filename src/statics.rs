@@ -1,0 +1,218 @@
+//! Static equilibrium along the load factor: equal increments, or automatic ones that grow, shrink and retry.
+
+use crate::assembly::{LoadLevel, Workspace, place_supports};
+use crate::element::Stress;
+use crate::interpolation::Increment;
+use crate::model::Model;
+use crate::newton::{Newton, NotConverged, Test};
+use crate::recorder::Recorder;
+use crate::scene::Statics;
+use crate::solution::{Solution, SolveError, SolveFailure, Statistics, StopReason};
+use crate::state::State;
+
+/// Solves for the load factors from 0 to 1; `progress` hears of every accepted increment.
+pub fn solve(
+    model: &Model,
+    options: &Statics,
+    progress: &mut dyn FnMut(f64, &Statistics),
+) -> Result<Solution, Box<SolveFailure>> {
+    let mut path = Path::new(model, options, progress);
+    let outcome = path.follow(options.increments);
+    let solution = path.recorder.finish(path.statistics);
+    match outcome {
+        Ok(()) => Ok(solution),
+        Err(error) => Err(Box::new(SolveFailure { error, partial: solution })),
+    }
+}
+
+/// A converged point of the path.
+#[derive(Clone)]
+struct Point {
+    place: f64,
+    state: State,
+    /// s of every rod.
+    stresses: Vec<Vec<Stress>>,
+}
+
+/// The place on the path runs from −1 to 0 while loads that act at λ = 0 already are brought up, then with λ.
+fn level(place: f64) -> LoadLevel {
+    LoadLevel { load_factor: place.max(0.0), preload: (1.0 + place).min(1.0) }
+}
+
+/// Automatic increments: the first is chosen such that the linear answer turns nodes by this angle, or moves
+/// them by this fraction of the rod's length.
+const FIRST_ROTATION: f64 = 0.3;
+/// Iterations an increment should need; fewer let the next one grow.
+const WANTED_ITERATIONS: f64 = 6.0;
+/// An increment that needs more is cheaper to halve.
+const PATIENCE: usize = 12;
+/// Smallest increment.
+const SMALLEST: f64 = 1e-9;
+
+struct Path<'a> {
+    model: &'a Model,
+    newton: Newton,
+    work: Workspace,
+    statistics: Statistics,
+    /// The last converged point and the one before it.
+    last: Point,
+    before: Option<Point>,
+    recorder: Recorder,
+    progress: &'a mut dyn FnMut(f64, &Statistics),
+}
+
+impl<'a> Path<'a> {
+    fn new(model: &'a Model, options: &Statics, progress: &'a mut dyn FnMut(f64, &Statistics)) -> Self {
+        let work = Workspace::new(model, options.coordinates);
+        let stresses = work.rods.iter().map(|rod| rod.stresses.clone()).collect();
+        Self {
+            model,
+            newton: Newton {
+                kind: options.newton,
+                test: options.tolerance.map_or(Test::Relative, Test::Absolute),
+                max_iterations: options.max_iterations,
+            },
+            work,
+            statistics: Statistics::default(),
+            last: Point { place: 0.0, state: model.reference.clone(), stresses },
+            before: None,
+            recorder: Recorder::new(model),
+            progress,
+        }
+    }
+
+    fn follow(&mut self, increments: Option<usize>) -> Result<(), SolveError> {
+        if self.model.loaded_at_start() {
+            self.last.place = -1.0;
+            self.automatic(0.0)?;
+            self.before = None;
+            self.statistics.increments = 0;
+        }
+        self.work
+            .evaluate(self.model, &self.last.state, &level(0.0))
+            .and_then(|()| self.record())
+            .map_err(|reason| self.error(0.0, &NotConverged { iterations: 0, residual: 0.0, reason }))?;
+        match increments {
+            Some(count) => self.equal(count),
+            None => self.automatic(1.0),
+        }
+    }
+
+    fn equal(&mut self, count: usize) -> Result<(), SolveError> {
+        for k in 1..=count {
+            let place = k as f64 / count as f64;
+            self.attempt(place, self.newton.max_iterations).map_err(|stop| self.error(place, &stop))?;
+        }
+        Ok(())
+    }
+
+    fn automatic(&mut self, end: f64) -> Result<(), SolveError> {
+        let mut step = self.first_step(end);
+        while self.last.place < end {
+            let left = end - self.last.place;
+            // Two equal steps rather than a full one and a remainder.
+            let place = if step >= left {
+                end
+            } else {
+                self.last.place + if 2.0 * step > left { 0.5 * left } else { step }
+            };
+            match self.attempt(place, self.newton.max_iterations.min(PATIENCE)) {
+                Ok(iterations) => step *= (WANTED_ITERATIONS / iterations.max(1) as f64).clamp(0.5, 2.0),
+                Err(stop) => {
+                    self.statistics.rejected += 1;
+                    step = 0.25 * (place - self.last.place);
+                    if step < SMALLEST {
+                        return Err(self.error(place, &stop));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The share of the way to `end` on which the linear answer turns or moves no node too far.
+    fn first_step(&mut self, end: f64) -> f64 {
+        let whole = end - self.last.place;
+        let target = level(end);
+        let (work, state) = (&mut self.work, &self.last.state);
+        self.statistics.newton_iterations += 1;
+        self.statistics.factorizations += 1;
+        let answered = work
+            .evaluate(self.model, state, &target)
+            .and_then(|()| work.factorize(self.model, state, &target))
+            .and_then(|()| work.solve(self.model, state));
+        if answered.is_err() {
+            return 1e-3 * whole;
+        }
+        let mut size = 0.0_f64;
+        for (rod, work) in self.model.rods.iter().zip(&work.rods) {
+            for increment in &work.increments {
+                size = size.max(increment.rotation.norm()).max(increment.translation.norm() / rod.length);
+            }
+        }
+        if size > FIRST_ROTATION { whole * FIRST_ROTATION / size } else { whole }
+    }
+
+    /// Solves at `place` from the last point and accepts, or leaves the last point as it was.
+    fn attempt(&mut self, place: f64, max_iterations: usize) -> Result<usize, NotConverged> {
+        let mut state = self.last.state.clone();
+        for (rod, saved) in self.work.rods.iter_mut().zip(&self.last.stresses) {
+            rod.stresses.copy_from_slice(saved);
+        }
+        self.predict(place, &mut state);
+        let newton = Newton { max_iterations, ..self.newton };
+        let converged = newton.solve(self.model, &level(place), &mut state, &mut self.work, &mut self.statistics)?;
+        state.normalize();
+        let stresses = self.work.rods.iter().map(|rod| rod.stresses.clone()).collect();
+        self.before = Some(std::mem::replace(&mut self.last, Point { place, state, stresses }));
+        self.statistics.increments += 1;
+        self.statistics.most_iterations = self.statistics.most_iterations.max(converged.iterations);
+        self.statistics.residual = self.statistics.residual.max(converged.residual);
+        if place > 0.0 {
+            let iterations = converged.iterations;
+            self.record().map_err(|reason| NotConverged { iterations, residual: converged.residual, reason })?;
+            (self.progress)(place, &self.statistics);
+        }
+        Ok(converged.iterations)
+    }
+
+    /// Extrapolates state and stresses along the last increment.
+    fn predict(&mut self, place: f64, state: &mut State) {
+        let Some(before) = &self.before else { return };
+        if std::env::var("NOPRED").is_ok() { return; }
+        let factor = (place - self.last.place) / (self.last.place - before.place);
+        for node in 0..state.poses().len() {
+            let increment = self.last.state.increment_since(&before.state, node);
+            state.add(
+                node,
+                &Increment { translation: increment.translation * factor, rotation: increment.rotation * factor },
+            );
+        }
+        for rod in &self.model.rods {
+            place_supports(rod, state);
+        }
+        let rods = self.work.rods.iter_mut().zip(&self.last.stresses).zip(&before.stresses);
+        for ((rod, last), before) in rods {
+            for ((stress, last), before) in rod.stresses.iter_mut().zip(last).zip(before) {
+                stress.force = last.force + (last.force - before.force) * factor;
+                stress.moment = last.moment + (last.moment - before.moment) * factor;
+            }
+        }
+    }
+
+    fn record(&mut self) -> Result<(), StopReason> {
+        self.recorder.record(self.model, self.last.place.max(0.0), &self.last.state, &self.work)
+    }
+
+    fn error(&self, place: f64, stop: &NotConverged) -> SolveError {
+        SolveError::NotConverged {
+            load_factor: place.max(0.0),
+            iterations: stop.iterations,
+            residual: stop.residual,
+            tolerance: self.newton.test.tolerance(),
+            reason: stop.reason,
+            increments: self.statistics.increments,
+            reached: self.last.place.max(0.0),
+        }
+    }
+}
