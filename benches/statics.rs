@@ -1,1 +1,67 @@
-fn main(){}
+//! Static solves of the paper's spring and of the 45° bend. What is covered: see README.md beside this file.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use cosserat::assembly::{LoadLevel, Workspace};
+use cosserat::scene::{Coordinates, Reference};
+use cosserat::{Model, Scene, statics};
+use criterion::{Criterion, criterion_group, criterion_main};
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    Scene::from_file(&path).expect("a scene of the repository")
+}
+
+fn model(scene: &Scene) -> Model {
+    Model::new(scene).expect("a scene of the repository")
+}
+
+/// Setup with the fit (21) of 151 nodes to 301 samples.
+fn fit(criterion: &mut Criterion) {
+    let scene = scene("helical_spring.toml");
+    criterion.bench_function("spring/fit_301", |bencher| bencher.iter(|| model(black_box(&scene))));
+}
+
+/// Residual, tangent, factorisation, solution, stress iterate: one Newton iteration of 75 quadratic elements.
+fn iteration(criterion: &mut Criterion) {
+    let mut scene = scene("helical_spring.toml");
+    scene.rod[0].reference = Reference::Nodes;
+    let model = model(&scene);
+    let mut work = Workspace::new(&model, Coordinates::Increments);
+    let state = model.reference_state().clone();
+    let level = LoadLevel { load_factor: 1e-3, preload: 1.0 };
+    criterion.bench_function("spring/iteration", |bencher| {
+        bencher.iter(|| {
+            work.evaluate(&model, &state, &level).expect("regular");
+            black_box(work.residual(&model, &state));
+            work.factorize(&model, &state, &level).expect("regular");
+            work.solve(&model, &state).expect("regular");
+            work.advance_stresses(&model, &state).expect("regular");
+            work.reset_stresses();
+        });
+    });
+}
+
+/// Whole solves, model included.
+fn solves(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("solve");
+    group.sample_size(10);
+    let equal = scene("helical_spring.toml");
+    let mut automatic = equal.clone();
+    automatic.statics = Some(Default::default());
+    for (name, scene) in [
+        ("spring_500_increments", equal),
+        ("spring_automatic", automatic),
+        ("bend_45", scene("bend_45.toml")),
+    ] {
+        let options = scene.statics.clone().unwrap_or_default();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| statics::solve(&model(&scene), &options, &mut |_, _| ()).expect("solvable"));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, fit, iteration, solves);
+criterion_main!(benches);

@@ -8,7 +8,7 @@ use crate::interpolation::{Increment, Pose};
 use crate::linear_solver::{Chain, NODE, Singular, Sparse};
 use crate::load::Course;
 use crate::model::{Model, RodModel};
-use crate::rod::{NodalForces, NodalTerms, QUATERNION_NODE, Target, TangentError};
+use crate::rod::{NodalForces, NodalTerms, QUATERNION_NODE, TangentError, Target};
 use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::Coordinates;
 use crate::solution::StopReason;
@@ -139,7 +139,8 @@ impl Workspace {
             }
             let (force_scale, moment_scale) = tolerance_scales(rod, work, poses);
             result.absolute = largest(result.absolute, largest(force, moment));
-            result.relative = largest(result.relative, largest(ratio(force, force_scale), ratio(moment, moment_scale)));
+            result.relative =
+                largest(result.relative, largest(ratio(force, force_scale), ratio(moment, moment_scale)));
         }
         result
     }
@@ -282,7 +283,8 @@ impl Workspace {
                         let step = &self.right[QUATERNION_NODE * node..][..QUATERNION_NODE];
                         let change = Vector4::new(step[3], step[4], step[5], step[6]);
                         increment.translation = Vector3::new(step[0], step[1], step[2]);
-                        increment.rotation = rotation_from_quaternion_rate(&state.quaternions()[node]) * change;
+                        increment.rotation =
+                            rotation_from_quaternion_rate(&state.quaternions()[node]) * change;
                     }
                 }
             }
@@ -335,9 +337,16 @@ fn max_norm(v: &Vector3<f64>) -> f64 {
     largest(v.x.abs(), largest(v.y.abs(), v.z.abs()))
 }
 
-/// a/b for a residual and its scale; an unloaded, unstrained rod has 0/0 = 0.
+/// a/b for a residual and its scale; an unloaded, unstrained rod has 0/0 = 0, and a scale that overflowed
+/// (a/∞ = 0 would look converged) gives NaN.
 fn ratio(a: f64, b: f64) -> f64 {
-    if a == 0.0 { 0.0 } else { a / b }
+    if !b.is_finite() {
+        f64::NAN
+    } else if a == 0.0 {
+        0.0
+    } else {
+        a / b
+    }
 }
 
 /// (F + F₀/τ, M + M₀/τ): the largest nodal sums of absolute contributions, and the rounding floors.

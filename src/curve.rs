@@ -184,10 +184,17 @@ struct PoseRow {
 /// Reads `x,y,z,qw,qx,qy,qz`.
 fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
     let wrong = |problem: String| {
-        SceneError::new(format!("{key}.file"), problem, "a CSV file with the header x,y,z,qw,qx,qy,qz and finite numbers")
+        SceneError::new(
+            format!("{key}.file"),
+            problem,
+            "a CSV file with the header x,y,z,qw,qx,qy,qz and finite numbers",
+        )
     };
-    let text = std::fs::read_to_string(file)
-        .map_err(|source| Error::File { action: "read", path: file.to_path_buf(), source })?;
+    let text = std::fs::read_to_string(file).map_err(|source| Error::File {
+        action: "read",
+        path: file.to_path_buf(),
+        source,
+    })?;
     let mut poses = Vec::new();
     for (index, row) in csv::Reader::from_reader(text.as_bytes()).deserialize::<PoseRow>().enumerate() {
         let line = index + 2;
@@ -195,7 +202,11 @@ fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
         let quaternion = Vector4::new(row.qw, row.qx, row.qy, row.qz);
         let position = Vector3::new(row.x, row.y, row.z);
         if !position.iter().chain(quaternion.iter()).all(|x| x.is_finite()) {
-            return Err(wrong(format!("line {line} of {} holds a number that is not finite", file.display())).into());
+            return Err(wrong(format!(
+                "line {line} of {} holds a number that is not finite",
+                file.display()
+            ))
+            .into());
         }
         if quaternion.amax() == 0.0 {
             return Err(wrong(format!("line {line} of {} holds a zero quaternion", file.display())).into());
@@ -203,7 +214,12 @@ fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
         poses.push(Pose { position, rotation: rotation_matrix(&quaternion) });
     }
     if poses.len() < 2 {
-        return Err(wrong(format!("{} holds {} poses; a rod needs two at least", file.display(), poses.len())).into());
+        return Err(wrong(format!(
+            "{} holds {} poses; a rod needs two at least",
+            file.display(),
+            poses.len()
+        ))
+        .into());
     }
     Ok(poses)
 }

@@ -171,7 +171,9 @@ pub fn advance_stress<const N: usize, I: Interpolation<N>>(
     constitutive: &[Stress],
     stresses: &mut [Stress],
 ) -> Result<(), HalfTurn> {
-    for (((basis, reference), constitutive), stress) in rule.iter().zip(reference).zip(constitutive).zip(stresses) {
+    for (((basis, reference), constitutive), stress) in
+        rule.iter().zip(reference).zip(constitutive).zip(stresses)
+    {
         let (gamma, kappa) = I::strain_increment(nodes, basis, increments)?;
         stress.force = constitutive.force + stiffness.force.component_mul(&(gamma / reference.jacobian));
         stress.moment = constitutive.moment + stiffness.moment.component_mul(&(kappa / reference.jacobian));

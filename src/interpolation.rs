@@ -12,7 +12,8 @@ use thiserror::Error;
 
 use crate::lagrange::Basis;
 use crate::rotation::{
-    Twist, TwistMap, axial, exp_se3, log_se3, polar_rotation, right_jacobian_inverse_se3, right_jacobian_se3, skew,
+    Twist, TwistMap, axial, exp_se3, log_se3, polar_rotation, right_jacobian_inverse_se3, right_jacobian_se3,
+    skew,
 };
 
 /// Position and orientation A_IK of a cross-section or a node.
@@ -211,7 +212,8 @@ impl<const N: usize> Interpolation<N> for R12 {
         let rotation = combine(nodes, &basis.value);
         let slope = combine(nodes, &basis.derivative);
         let tangent = tangent_vector(nodes, basis);
-        let (mut turned, mut turned_slope, mut stretched) = (Matrix3::zeros(), Matrix3::zeros(), Vector3::zeros());
+        let (mut turned, mut turned_slope, mut stretched) =
+            (Matrix3::zeros(), Matrix3::zeros(), Vector3::zeros());
         for j in 0..N {
             let change = nodes[j].rotation * skew(&increments[j].rotation);
             turned += change * basis.value[j];
@@ -269,10 +271,7 @@ fn compose(first: &TwistMap, second: &TwistMap) -> TwistMap {
 /// δθ = J_r⁻¹(θ) η₁ − J_r⁻¹(−θ) η₀ with the body increments η_j = (A_jᵀ δr_j, δφ_j); both factors.
 fn twist_derivative(twist: &Twist) -> [TwistMap; 2] {
     let start = right_jacobian_inverse_se3(&scaled(twist, -1.0));
-    [
-        TwistMap { diagonal: -start.diagonal, coupling: -start.coupling },
-        right_jacobian_inverse_se3(twist),
-    ]
+    [TwistMap { diagonal: -start.diagonal, coupling: -start.coupling }, right_jacobian_inverse_se3(twist)]
 }
 
 /// η(x) = Ad(Exp(−x θ)) η₀ + x J_r(x θ) δθ; the factors of η₀ and η₁.
@@ -284,10 +283,7 @@ fn body_derivative(twist: &Twist, x: f64) -> [TwistMap; 2] {
     jacobian.coupling *= x;
     let [start, end] = twist_derivative(twist).map(|map| compose(&jacobian, &map));
     let back = rotation.transpose();
-    [
-        TwistMap { diagonal: start.diagonal + back, coupling: start.coupling - back * skew(&position) },
-        end,
-    ]
+    [TwistMap { diagonal: start.diagonal + back, coupling: start.coupling - back * skew(&position) }, end]
 }
 
 /// A and ∂φ/∂δφ_j at a point of an SE(3) element.
@@ -342,7 +338,8 @@ impl Interpolation<2> for Se3 {
         let d = Self::strain_derivative(nodes, basis)?;
         let (mut gamma, mut kappa) = (Vector3::zeros(), Vector3::zeros());
         for j in 0..2 {
-            gamma += d.gamma_translation[j] * increments[j].translation + d.gamma_rotation[j] * increments[j].rotation;
+            gamma += d.gamma_translation[j] * increments[j].translation
+                + d.gamma_rotation[j] * increments[j].rotation;
             kappa += d.kappa_rotation[j] * increments[j].rotation;
         }
         Ok((gamma, kappa))

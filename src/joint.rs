@@ -63,7 +63,12 @@ impl Support {
     }
 
     /// The moment row of Tᵀ f; the force row is zero.
-    pub fn free_moment(&self, rotation: &Matrix3<f64>, force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector3<f64> {
+    pub fn free_moment(
+        &self,
+        rotation: &Matrix3<f64>,
+        force: &Vector3<f64>,
+        moment: &Vector3<f64>,
+    ) -> Vector3<f64> {
         // s̃ᵀ b = −s × b.
         self.free * (moment - self.lever.cross(&rotation.tr_mul(force)))
     }
@@ -96,7 +101,12 @@ impl Support {
     }
 
     /// (force, moment about the held point) that the ground exerts on the rod, inertial, from the node's rows f.
-    pub fn reaction(&self, pose: &Pose, force: &Vector3<f64>, moment: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    pub fn reaction(
+        &self,
+        pose: &Pose,
+        force: &Vector3<f64>,
+        moment: &Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
         let arm = pose.position - self.anchor;
         (-force, -(pose.rotation * moment) - arm.cross(force))
     }

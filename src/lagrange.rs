@@ -31,8 +31,10 @@ pub fn basis<const N: usize>(nodes: &[f64; N], x: f64, weight: f64) -> Basis<N> 
     for i in 0..N {
         for k in (0..N).filter(|&k| k != i) {
             result.value[i] *= (x - nodes[k]) / (nodes[i] - nodes[k]);
-            let product: f64 =
-                (0..N).filter(|&j| j != i && j != k).map(|j| (x - nodes[j]) / (nodes[i] - nodes[j])).product();
+            let product: f64 = (0..N)
+                .filter(|&j| j != i && j != k)
+                .map(|j| (x - nodes[j]) / (nodes[i] - nodes[j]))
+                .product();
             result.derivative[i] += product / (nodes[i] - nodes[k]);
         }
     }

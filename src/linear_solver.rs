@@ -135,7 +135,11 @@ impl Chain {
     }
 
     /// Adds and condenses the tangent of one element; every element once, in any order.
-    pub fn add_element<const N: usize>(&mut self, e: usize, tangent: &ElementTangent<N>) -> Result<(), Singular> {
+    pub fn add_element<const N: usize>(
+        &mut self,
+        e: usize,
+        tangent: &ElementTangent<N>,
+    ) -> Result<(), Singular> {
         let m = self.interior;
         let width = m + WIDE;
         let end = N - 1;
@@ -221,7 +225,13 @@ impl Chain {
                 first.copy_from_slice(&ends[..NODE]);
                 last.copy_from_slice(&ends[NODE..]);
             }
-            substitute(&self.diagonal[e * BLOCK..][..BLOCK], NODE, WIDE, &self.pivots[e * NODE..][..NODE], first);
+            substitute(
+                &self.diagonal[e * BLOCK..][..BLOCK],
+                NODE,
+                WIDE,
+                &self.pivots[e * NODE..][..NODE],
+                first,
+            );
             subtract_product(&self.lower[e * NODE * NODE..][..NODE * NODE], NODE, first, last);
         }
         let e = self.elements;
@@ -337,7 +347,8 @@ mod tests {
                     for (j, block) in row.iter().enumerate() {
                         for r in 0..NODE {
                             for c in 0..NODE {
-                                let (row, column) = ((e * degree + i) * NODE + r, (e * degree + j) * NODE + c);
+                                let (row, column) =
+                                    ((e * degree + i) * NODE + r, (e * degree + j) * NODE + c);
                                 sparse.add(row, column, block[(r, c)]);
                                 b[row] += block[(r, c)] * x[column];
                             }

@@ -118,7 +118,9 @@ mod tests {
     #[test]
     fn tables_are_linear_between_and_constant_outside() {
         let course = Course::Table(vec![[0.0, 0.0], [0.5, 2.0], [1.0, 1.0]]);
-        for (t, factor) in [(-1.0, 0.0), (0.0, 0.0), (0.25, 1.0), (0.5, 2.0), (0.75, 1.5), (1.0, 1.0), (2.0, 1.0)] {
+        for (t, factor) in
+            [(-1.0, 0.0), (0.0, 0.0), (0.25, 1.0), (0.5, 2.0), (0.75, 1.5), (1.0, 1.0), (2.0, 1.0)]
+        {
             assert_eq!(course.factor(t), factor);
         }
         assert_eq!(Course::Table(vec![[0.5, 3.0]]).factor(0.1), 3.0);

@@ -63,6 +63,10 @@ pub(crate) struct ProbeModel {
     pub angles: Option<EulerSequence>,
 }
 
+/// A determinant of the interpolated rotation below this is a mesh too coarse: with two nodes α apart it falls to
+/// cos²(α/2) halfway between them, so a tenth is lost at 37° in one interval, where strains are off by as much.
+const RESOLVED_DETERMINANT: f64 = 0.9;
+
 /// Everything a solve needs and nothing it changes.
 #[derive(Debug)]
 pub struct Model {
@@ -109,6 +113,7 @@ impl Model {
             model.add_probe(scene, index)?;
         }
         free_motion::refuse(&model)?;
+        model.warnings = model.unresolved(&model.reference, "undeformed shape");
         Ok(model)
     }
 
@@ -123,11 +128,17 @@ impl Model {
         self.rods.iter().map(|rod| 6 * rod.nodes - held(rod)).sum()
     }
 
+    /// The undeformed state; positions are relative to the start of the first rod.
+    pub fn reference_state(&self) -> &State {
+        &self.reference
+    }
+
     /// Whether any load acts at load factor 0 already.
     pub(crate) fn loaded_at_start(&self) -> bool {
         let acts = |course: &Course| course.factor(0.0) != 0.0;
         self.rods.iter().any(|rod| {
-            rod.point_loads.iter().any(|load| acts(&load.course)) || rod.line_loads.iter().any(|(_, c)| acts(c))
+            rod.point_loads.iter().any(|load| acts(&load.course))
+                || rod.line_loads.iter().any(|(_, c)| acts(c))
         })
     }
 
@@ -143,22 +154,58 @@ impl Model {
         Ok(Pose { position: self.origin + pose.position + pose.rotation * offset, rotation: pose.rotation })
     }
 
+    /// A sentence for every rod whose mesh does not resolve a state.
+    pub(crate) fn unresolved(&self, state: &State, what: &str) -> Vec<String> {
+        let sentence = |rod: &RodModel| {
+            let (element, determinant) = rod.kernel.smallest_determinant(&state.poses()[rod.range.clone()]);
+            (determinant < RESOLVED_DETERMINANT).then(|| {
+                format!(
+                    "the mesh of rod `{}` is too coarse for its {what}: in element {element} the interpolated \
+                     rotation has the determinant {determinant:.3} instead of 1; use more elements",
+                    rod.name
+                )
+            })
+        };
+        self.rods.iter().filter_map(sentence).collect()
+    }
+
     fn add_rod(&mut self, scene: &Scene, index: usize, curve: &PlacedCurve) -> Result<(), SceneError> {
         let rod = &scene.rod[index];
         let key = |name: &str| format!("rod.{index}.{name}");
-        let kernel = rod_elements(rod.elements, rod.degree, rod.node_spacing, rod.interpolation, rod.quadrature)
-            .ok_or_else(|| SceneError::new(key("interpolation"), "has no such degree", "degree 1 for se3"))?;
+        let kernel =
+            rod_elements(rod.elements, rod.degree, rod.node_spacing, rod.interpolation, rod.quadrature)
+                .ok_or_else(|| {
+                    SceneError::new(key("interpolation"), "has no such degree", "degree 1 for se3")
+                })?;
         let stiffness = stiffness(&rod.section, rod.material.as_ref())
             .ok_or_else(|| SceneError::new(key("material"), "is incomplete", "two of E, G and ν"))?;
+        if !stiffness.force.iter().chain(&stiffness.moment).all(|x| x.is_normal() && *x > 0.0) {
+            return Err(SceneError::new(
+                key("section"),
+                format!(
+                    "has stiffnesses beyond all numbers: {:?} N, {:?} N m²",
+                    stiffness.force.as_slice(),
+                    stiffness.moment.as_slice()
+                ),
+                "sizes and moduli whose products are positive and finite",
+            ));
+        }
         let positions = kernel.node_positions();
         let widest = positions.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         let few = |problem: String, elements: usize| {
-            SceneError::new(key("elements"), problem, format!("{elements} elements of degree {} or more", rod.degree))
+            SceneError::new(
+                key("elements"),
+                problem,
+                format!("at least {elements} elements of degree {}", rod.degree),
+            )
         };
         let turn = widest * curve.total_turn();
         if turn > 0.999 * std::f64::consts::PI {
             let enough = (rod.elements as f64 * turn / (0.5 * std::f64::consts::PI)).ceil() as usize;
-            return Err(few(format!("lets neighbouring nodes be {turn:.3} rad apart, half a turn or more"), enough));
+            return Err(few(
+                format!("lets neighbouring nodes be {turn:.3} rad apart, half a turn or more"),
+                enough,
+            ));
         }
         let mut state = State::from_poses(positions.iter().map(|&xi| curve.pose(xi)));
         let samples = match (curve.given_poses(), rod.reference) {
@@ -174,10 +221,12 @@ impl Model {
             .reference(state.poses(), !line_loads.is_empty())
             .map_err(|e| few(format!("is too coarse: element {e} is degenerate"), 2 * rod.elements))?;
         let q = kernel.points();
-        let lengths = reference.points.chunks_exact(q).map(|points| {
-            points.iter().map(|point| point.jacobian).sum::<f64>() / q as f64
-        });
-        let (length, element_length) = lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, x.min(least)));
+        let lengths = reference
+            .points
+            .chunks_exact(q)
+            .map(|points| points.iter().map(|point| point.jacobian).sum::<f64>() / q as f64);
+        let (length, element_length) =
+            lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, x.min(least)));
         let first = self.reference.poses().len();
         self.rods.push(RodModel {
             name: rod.name.clone(),
@@ -212,14 +261,18 @@ impl Model {
         if samples < nodes {
             return Err(SceneError::new(
                 key,
-                format!("fits {nodes} nodes to {samples} samples, {} residuals for {} unknowns", 6 * samples, 6 * nodes),
+                format!(
+                    "fits {nodes} nodes to {samples} samples, {} residuals for {} unknowns",
+                    6 * samples,
+                    6 * nodes
+                ),
                 format!("at least {nodes} samples"),
             ));
         }
         let targets: Vec<Pose> = (0..samples).map(|j| curve.pose(j as f64 / (samples - 1) as f64)).collect();
-        kernel
-            .fit(state, &targets)
-            .map_err(|error| SceneError::new(key, format!("fit failed: {error}"), "more elements or smoother poses"))?;
+        kernel.fit(state, &targets).map_err(|error| {
+            SceneError::new(key, format!("fit failed: {error}"), "more elements or smoother poses")
+        })?;
         Ok(())
     }
 
@@ -300,7 +353,9 @@ impl Model {
     fn point(&self, on: &str, key: &str) -> Result<(usize, f64), SceneError> {
         parse_point(on)
             .and_then(|(name, xi)| Some((self.rods.iter().position(|rod| rod.name == name)?, xi)))
-            .ok_or_else(|| SceneError::new(key, format!("names no point of a rod: `{on}`"), "rod@ξ, ξ in [0, 1]"))
+            .ok_or_else(|| {
+                SceneError::new(key, format!("names no point of a rod: `{on}`"), "rod@ξ, ξ in [0, 1]")
+            })
     }
 
     /// `rod@ξ` as (index of the rod, index of the node in it).
@@ -308,12 +363,17 @@ impl Model {
         let (rod, xi) = self.point(on, key)?;
         let positions = self.rods[rod].kernel.node_positions();
         let distance = |node: &f64| (node - xi).abs();
-        let nearest = (0..positions.len()).min_by(|&a, &b| distance(&positions[a]).total_cmp(&distance(&positions[b])));
+        let nearest =
+            (0..positions.len()).min_by(|&a, &b| distance(&positions[a]).total_cmp(&distance(&positions[b])));
         match nearest {
             Some(node) if distance(&positions[node]) <= NODE_TOLERANCE => Ok((rod, node)),
             _ => {
                 let nearest = nearest.map_or(0.0, |node| positions[node]);
-                Err(SceneError::new(key, format!("is no node of the rod: ξ = {xi}"), format!("a node; the nearest is ξ = {nearest}")))
+                Err(SceneError::new(
+                    key,
+                    format!("is no node of the rod: ξ = {xi}"),
+                    format!("a node; the nearest is ξ = {nearest}"),
+                ))
             }
         }
     }

@@ -79,7 +79,7 @@ impl Newton {
         work: &mut Workspace,
         statistics: &mut Statistics,
     ) -> Result<Converged, NotConverged> {
-        let mut residual = f64::MAX;
+        let mut residual = f64::INFINITY;
         let mut iterations = 0;
         let stop = |reason, iterations, residual| NotConverged { iterations, residual, reason };
         loop {

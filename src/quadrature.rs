@@ -70,8 +70,9 @@ mod tests {
     fn gauss_rules_are_exact_to_their_degree_and_no_further() {
         for n in 1..=41 {
             let rule = gauss_legendre(n);
-            let moment =
-                |k: i32| rule.points.iter().zip(&rule.weights).map(|(x, w)| w * (2.0 * x - 1.0).powi(k)).sum::<f64>();
+            let moment = |k: i32| {
+                rule.points.iter().zip(&rule.weights).map(|(x, w)| w * (2.0 * x - 1.0).powi(k)).sum::<f64>()
+            };
             for k in 0..2 * n as i32 {
                 let exact = if k % 2 == 0 { 1.0 / (k + 1) as f64 } else { 0.0 };
                 assert!((moment(k) - exact).abs() < 4e-15, "n = {n}, degree {k}");

@@ -21,8 +21,11 @@ pub struct Recorder {
 impl Recorder {
     /// For a model.
     pub fn new(model: &Model) -> Self {
-        let solution =
-            Solution { unknowns: model.unknowns(), warnings: model.warnings().to_vec(), ..Solution::default() };
+        let solution = Solution {
+            unknowns: model.unknowns(),
+            warnings: model.warnings().to_vec(),
+            ..Solution::default()
+        };
         Self { solution }
     }
 
@@ -37,7 +40,8 @@ impl Recorder {
         let previous = self.solution.rows.last();
         let mut probes = Vec::with_capacity(model.probes.len());
         for (index, probe) in model.probes.iter().enumerate() {
-            let pose = model.pose(state, probe.rod, probe.xi, &probe.offset).map_err(|_| half_turn(model, probe))?;
+            let pose =
+                model.pose(state, probe.rod, probe.xi, &probe.offset).map_err(|_| half_turn(model, probe))?;
             let before = previous.map(|row| &row.probes[index]);
             let quaternion = continuous(quaternion_of(&pose.rotation), before);
             let angles = probe.angles.map(|_| unwrapped(euler_zyx(&pose.rotation), before));
@@ -54,24 +58,31 @@ impl Recorder {
         });
         let row = Row { parameter, probes, reactions: reactions.collect() };
         self.solution.rows.push(row);
-        let wanted = self.solution.shapes.last().map_or(0.0, |shape| {
-            ((shape.parameter * SHAPES as f64 + 1e-9).floor() + 1.0) / SHAPES as f64
-        });
+        let wanted =
+            self.solution.shapes.last().map_or(0.0, |shape| {
+                ((shape.parameter * SHAPES as f64 + 1e-9).floor() + 1.0) / SHAPES as f64
+            });
         if parameter >= wanted - 1e-9 {
             self.solution.shapes.push(shape(model, parameter, state));
         }
         Ok(())
     }
 
-    /// The solution.
-    pub fn finish(self, statistics: Statistics) -> Solution {
+    /// The solution; warns where the mesh resolves the reference, but not the last state.
+    pub fn finish(mut self, model: &Model, state: &State, statistics: Statistics) -> Solution {
+        if model.warnings().is_empty() {
+            self.solution.warnings = model.unresolved(state, "last state");
+        }
         Solution { statistics, ..self.solution }
     }
 }
 
 fn half_turn(model: &Model, probe: &ProbeModel) -> StopReason {
     let elements = model.rods[probe.rod].elements;
-    StopReason::HalfTurn { rod: probe.rod, element: ((probe.xi * elements as f64) as usize).min(elements - 1) }
+    StopReason::HalfTurn {
+        rod: probe.rod,
+        element: ((probe.xi * elements as f64) as usize).min(elements - 1),
+    }
 }
 
 /// The centrelines, without the points that cannot be interpolated.
@@ -101,7 +112,9 @@ fn euler_zyx(a: &Matrix3<f64>) -> [f64; 3] {
 
 /// Adds whole turns to come nearest to the row before.
 fn unwrapped(angles: [f64; 3], before: Option<&ProbePose>) -> [f64; 3] {
-    let Some(before) = before.and_then(|pose| pose.angles) else { return angles };
+    let Some(before) = before.and_then(|pose| pose.angles) else {
+        return angles;
+    };
     std::array::from_fn(|k| {
         let turn = std::f64::consts::TAU;
         angles[k] + turn * ((before[k] - angles[k]) / turn).round()

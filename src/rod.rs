@@ -7,8 +7,8 @@ use std::ops::Range;
 use nalgebra::{Matrix6, Vector3, Vector4};
 
 use crate::element::{
-    ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, advance_stress, internal_force,
-    internal_tangent, line_load_force, line_load_tangent, zero_tangent,
+    ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, advance_stress,
+    internal_force, internal_tangent, line_load_force, line_load_tangent, zero_tangent,
 };
 use crate::fit;
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose, R12, Se3};
@@ -167,6 +167,10 @@ pub trait RodElements: Debug + Send + Sync {
     /// The pose at ξ ∈ [0, 1].
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn>;
 
+    /// The element with the smallest det A at a quadrature point, and that determinant: 1 for a rotation, less
+    /// where the interpolated matrix has shrunk because the nodes are turned far against each other.
+    fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64);
+
     /// ξ of every node.
     fn node_positions(&self) -> Vec<f64>;
 
@@ -220,7 +224,11 @@ impl<const N: usize, I> Elements<N, I>
 where
     I: Interpolation<N> + Debug + Send + Sync + 'static,
 {
-    fn boxed(elements: usize, spacing: NodeSpacing, quadrature: QuadratureKind) -> Option<Box<dyn RodElements>> {
+    fn boxed(
+        elements: usize,
+        spacing: NodeSpacing,
+        quadrature: QuadratureKind,
+    ) -> Option<Box<dyn RodElements>> {
         let degree = N - 1;
         let nodes: [f64; N] = element_nodes(degree, spacing).try_into().ok()?;
         let points = match quadrature {
@@ -324,10 +332,12 @@ where
             let nodes = self.of(e, poses);
             let mut element = ElementForce::default();
             let (points, stresses) = (&reference.points[e * q..][..q], &mut constitutive[e * q..][..q]);
-            internal_force::<N, I>(nodes, &self.rule, points, stiffness, stresses, &mut element).map_err(|_| e)?;
+            internal_force::<N, I>(nodes, &self.rule, points, stiffness, stresses, &mut element)
+                .map_err(|_| e)?;
             if loaded {
                 let jacobians = &reference.load_jacobians[e * lq..][..lq];
-                line_load_force::<N, I>(nodes, &self.load_rule, jacobians, line_load, &mut element).map_err(|_| e)?;
+                line_load_force::<N, I>(nodes, &self.load_rule, jacobians, line_load, &mut element)
+                    .map_err(|_| e)?;
             }
             forces.scatter(e * (N - 1), &element);
         }
@@ -400,10 +410,26 @@ where
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn> {
         let (e, x) = self.locate(xi);
         // At a node the pose is the node's own, to the last digit.
-        if let Some(i) = self.nodes.iter().position(|node| (node - x).abs() <= NODE_TOLERANCE * self.elements as f64) {
+        if let Some(i) =
+            self.nodes.iter().position(|node| (node - x).abs() <= NODE_TOLERANCE * self.elements as f64)
+        {
             return Ok(poses[e * (N - 1) + i]);
         }
         I::pose(self.of(e, poses), &self.basis_at(x))
+    }
+
+    fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64) {
+        let mut smallest = (0, 1.0);
+        for e in 0..self.elements {
+            for basis in &self.rule {
+                let determinant =
+                    I::strain(self.of(e, poses), basis).map_or(0.0, |s| s.rotation.determinant());
+                if determinant < smallest.1 {
+                    smallest = (e, determinant);
+                }
+            }
+        }
+        smallest
     }
 
     fn node_positions(&self) -> Vec<f64> {

@@ -159,7 +159,12 @@ impl ExpCoefficients {
             const C: [f64; 9] = inverse_factorials(3);
             const B1: [f64; 8] = doubled_derivative(&B);
             const C1: [f64; 8] = doubled_derivative(&C);
-            Self { b: polynomial(&B, x), c: polynomial(&C, x), b1: polynomial(&B1, x), c1: polynomial(&C1, x) }
+            Self {
+                b: polynomial(&B, x),
+                c: polynomial(&C, x),
+                b1: polynomial(&B1, x),
+                c1: polynomial(&C1, x),
+            }
         } else {
             let (sin, cos) = theta.sin_cos();
             let b = (1.0 - cos) / x;
@@ -345,11 +350,13 @@ mod tests {
     use super::*;
 
     fn directions() -> [Vector3<f64>; 3] {
-        [Vector3::new(0.3, -0.5, 0.81), Vector3::new(-1.0, 0.2, 0.1), Vector3::new(0.0, 0.0, 1.0)].map(|v| v.normalize())
+        [Vector3::new(0.3, -0.5, 0.81), Vector3::new(-1.0, 0.2, 0.1), Vector3::new(0.0, 0.0, 1.0)]
+            .map(|v| v.normalize())
     }
 
     /// Angles across the switches of the series and up to half a turn.
-    const ANGLES: [f64; 12] = [0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 0.999_999, 1.000_001, 1.999_999, 2.000_001, 2.5, 3.1];
+    const ANGLES: [f64; 12] =
+        [0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 0.999_999, 1.000_001, 1.999_999, 2.000_001, 2.5, 3.1];
 
     #[test]
     fn quaternion_map_is_orthogonal_and_blind_to_the_norm() {
@@ -369,7 +376,9 @@ mod tests {
         for direction in directions() {
             for angle in ANGLES {
                 let psi = angle * direction;
-                assert!((log_so3(&exp_so3(&psi)) - psi).norm() <= 4e-15 * (1.0 + angle) / (PI - angle).min(1.0));
+                assert!(
+                    (log_so3(&exp_so3(&psi)) - psi).norm() <= 4e-15 * (1.0 + angle) / (PI - angle).min(1.0)
+                );
                 let twist = Twist { translation: Vector3::new(0.4, 0.9, -0.3), rotation: psi };
                 let (a, r) = exp_se3(&twist);
                 let back = log_se3(&a, &r).expect("below half a turn");

@@ -6,7 +6,9 @@
 
 mod read;
 mod validate;
-pub use validate::parse_point;
+
+pub use read::SceneFile;
+pub(crate) use validate::parse_point;
 
 use std::path::PathBuf;
 
@@ -36,6 +38,20 @@ pub struct Scene {
     /// What the plot shows beside the solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plot: Option<Plot>,
+}
+
+impl Scene {
+    /// The same scene with what the model would fill in: the names of joints and the course of loads.
+    pub fn with_defaults(&self) -> Self {
+        let mut scene = self.clone();
+        for (index, joint) in scene.joint.iter_mut().enumerate() {
+            joint.name = Some(self.joint_name(index));
+        }
+        for load in &mut scene.load {
+            load.time.get_or_insert(LoadTime::Named(NamedTime::Ramp));
+        }
+        scene
+    }
 }
 
 /// A slender rod.
@@ -76,6 +92,34 @@ pub struct Rod {
     /// Whether the rod has inertia in dynamics and modes.
     #[serde(default = "yes")]
     pub inertia: bool,
+}
+
+impl Rod {
+    /// A rod with the defaults of a scene file.
+    pub fn new(
+        name: impl Into<String>,
+        curve: impl Into<Curve>,
+        section: Section,
+        material: Option<Material>,
+        elements: usize,
+        degree: usize,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            curve: curve.into(),
+            section,
+            material,
+            elements,
+            degree,
+            node_spacing: NodeSpacing::default(),
+            interpolation: InterpolationKind::default(),
+            quadrature: QuadratureKind::default(),
+            reference: Reference::default(),
+            theory: Theory::default(),
+            gravity: true,
+            inertia: true,
+        }
+    }
 }
 
 fn yes() -> bool {

@@ -70,8 +70,8 @@ pub struct Solution {
 pub enum SolveError {
     /// Newton's iteration did not reach the tolerance.
     #[error(
-        "no equilibrium found at load factor {load_factor}: after {iterations} iterations the residual is {residual:.3e}, \
-         the tolerance {tolerance:.3e} ({reason}); {increments} increments converged, up to load factor {reached}"
+        "no equilibrium found at load factor {load_factor:?}: after {iterations} iterations the residual is {residual:.3e}, \
+         the tolerance {tolerance:.3e} ({reason}); {increments} increments converged, up to load factor {reached:?}"
     )]
     NotConverged {
         /// The load factor that was tried.

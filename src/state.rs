@@ -3,7 +3,9 @@
 use nalgebra::{Vector3, Vector4};
 
 use crate::interpolation::{Increment, Pose};
-use crate::rotation::{normalized, quaternion_exp, quaternion_of, quaternion_product, rotation_matrix, rotation_vector};
+use crate::rotation::{
+    normalized, quaternion_exp, quaternion_of, quaternion_product, rotation_matrix, rotation_vector,
+};
 
 /// Nodal positions and quaternions; the matrices A(P) are kept beside them.
 #[derive(Clone, Debug, Default, PartialEq)]

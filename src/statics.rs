@@ -18,7 +18,7 @@ pub fn solve(
 ) -> Result<Solution, Box<SolveFailure>> {
     let mut path = Path::new(model, options, progress);
     let outcome = path.follow(options.increments);
-    let solution = path.recorder.finish(path.statistics);
+    let solution = path.recorder.finish(model, &path.last.state, path.statistics);
     match outcome {
         Ok(()) => Ok(solution),
         Err(error) => Err(Box::new(SolveFailure { error, partial: solution })),
@@ -41,13 +41,15 @@ fn level(place: f64) -> LoadLevel {
 
 /// Automatic increments: the first is chosen such that the linear answer turns nodes by this angle, or moves
 /// them by this fraction of the rod's length.
-const FIRST_ROTATION: f64 = 0.3;
+const FIRST_ROTATION: f64 = 0.6;
+/// The first increment where the linear answer is none.
+const UNKNOWN_STEP: f64 = 1e-3;
 /// Iterations an increment should need; fewer let the next one grow.
-const WANTED_ITERATIONS: f64 = 6.0;
+const WANTED_ITERATIONS: f64 = 7.0;
 /// An increment that needs more is cheaper to halve.
 const PATIENCE: usize = 12;
-/// Smallest increment.
-const SMALLEST: f64 = 1e-9;
+/// Smallest increment, in first ones: the path has met a point that no increment of the load can pass.
+const SMALLEST: f64 = 1e-6;
 
 struct Path<'a> {
     model: &'a Model,
@@ -57,6 +59,9 @@ struct Path<'a> {
     /// The last converged point and the one before it.
     last: Point,
     before: Option<Point>,
+    /// Small equal increments gain by it (a quarter fewer iterations on the spring); automatic ones, which grow
+    /// until they are no longer small, do not.
+    extrapolate: bool,
     recorder: Recorder,
     progress: &'a mut dyn FnMut(f64, &Statistics),
 }
@@ -76,6 +81,7 @@ impl<'a> Path<'a> {
             statistics: Statistics::default(),
             last: Point { place: 0.0, state: model.reference.clone(), stresses },
             before: None,
+            extrapolate: false,
             recorder: Recorder::new(model),
             progress,
         }
@@ -99,6 +105,7 @@ impl<'a> Path<'a> {
     }
 
     fn equal(&mut self, count: usize) -> Result<(), SolveError> {
+        self.extrapolate = true;
         for k in 1..=count {
             let place = k as f64 / count as f64;
             self.attempt(place, self.newton.max_iterations).map_err(|stop| self.error(place, &stop))?;
@@ -108,6 +115,7 @@ impl<'a> Path<'a> {
 
     fn automatic(&mut self, end: f64) -> Result<(), SolveError> {
         let mut step = self.first_step(end);
+        let smallest = SMALLEST * step;
         while self.last.place < end {
             let left = end - self.last.place;
             // Two equal steps rather than a full one and a remainder.
@@ -121,7 +129,7 @@ impl<'a> Path<'a> {
                 Err(stop) => {
                     self.statistics.rejected += 1;
                     step = 0.25 * (place - self.last.place);
-                    if step < SMALLEST {
+                    if step < smallest {
                         return Err(self.error(place, &stop));
                     }
                 }
@@ -142,15 +150,16 @@ impl<'a> Path<'a> {
             .and_then(|()| work.factorize(self.model, state, &target))
             .and_then(|()| work.solve(self.model, state));
         if answered.is_err() {
-            return 1e-3 * whole;
+            return UNKNOWN_STEP * whole;
         }
         let mut size = 0.0_f64;
         for (rod, work) in self.model.rods.iter().zip(&work.rods) {
             for increment in &work.increments {
-                size = size.max(increment.rotation.norm()).max(increment.translation.norm() / rod.length);
+                // The largest component: its square may overflow where it does not.
+                size = size.max(increment.rotation.amax()).max(increment.translation.amax() / rod.length);
             }
         }
-        if size > FIRST_ROTATION { whole * FIRST_ROTATION / size } else { whole }
+        if size.is_finite() { whole * (FIRST_ROTATION / size).min(1.0) } else { UNKNOWN_STEP * whole }
     }
 
     /// Solves at `place` from the last point and accepts, or leaves the last point as it was.
@@ -159,9 +168,12 @@ impl<'a> Path<'a> {
         for (rod, saved) in self.work.rods.iter_mut().zip(&self.last.stresses) {
             rod.stresses.copy_from_slice(saved);
         }
-        self.predict(place, &mut state);
+        if self.extrapolate {
+            self.predict(place, &mut state);
+        }
         let newton = Newton { max_iterations, ..self.newton };
-        let converged = newton.solve(self.model, &level(place), &mut state, &mut self.work, &mut self.statistics)?;
+        let converged =
+            newton.solve(self.model, &level(place), &mut state, &mut self.work, &mut self.statistics)?;
         state.normalize();
         let stresses = self.work.rods.iter().map(|rod| rod.stresses.clone()).collect();
         self.before = Some(std::mem::replace(&mut self.last, Point { place, state, stresses }));
@@ -170,7 +182,11 @@ impl<'a> Path<'a> {
         self.statistics.residual = self.statistics.residual.max(converged.residual);
         if place > 0.0 {
             let iterations = converged.iterations;
-            self.record().map_err(|reason| NotConverged { iterations, residual: converged.residual, reason })?;
+            self.record().map_err(|reason| NotConverged {
+                iterations,
+                residual: converged.residual,
+                reason,
+            })?;
             (self.progress)(place, &self.statistics);
         }
         Ok(converged.iterations)
@@ -179,13 +195,15 @@ impl<'a> Path<'a> {
     /// Extrapolates state and stresses along the last increment.
     fn predict(&mut self, place: f64, state: &mut State) {
         let Some(before) = &self.before else { return };
-        if std::env::var("NOPRED").is_ok() { return; }
         let factor = (place - self.last.place) / (self.last.place - before.place);
         for node in 0..state.poses().len() {
             let increment = self.last.state.increment_since(&before.state, node);
             state.add(
                 node,
-                &Increment { translation: increment.translation * factor, rotation: increment.rotation * factor },
+                &Increment {
+                    translation: increment.translation * factor,
+                    rotation: increment.rotation * factor,
+                },
             );
         }
         for rod in &self.model.rods {

@@ -1,1 +1,32 @@
-fn main(){}
+//! The verification suite: every number of the solver held against something it did not compute.
+//!
+//! `cargo test --release --test verification` runs all of it, `… -- spring` what has "spring" in its name.
+
+mod case;
+mod cases;
+mod harness;
+mod measure;
+mod placement;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+
+use case::{Case, Checks};
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let trials = cases::all().into_iter().chain(harness::all()).map(trial).collect();
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// A case passes if it has checks and every one of them holds.
+fn trial(case: Case) -> Trial {
+    Trial::test(case.name, move || {
+        let mut checks = Checks::default();
+        (case.run)(&mut checks).map_err(|error| Failed::from(format!("{}\n{}", error, checks.table())))?;
+        if checks.hold() {
+            Ok(())
+        } else {
+            Err(format!("{}\nsource: {}", checks.table(), case.source).into())
+        }
+    })
+}

@@ -1,0 +1,155 @@
+//! Results as files: tables, a summary, a plot and the scene as solved.
+
+mod csv;
+mod summary;
+mod svg;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::error::Error;
+use crate::scene::Scene;
+use crate::solution::{Solution, SolveError};
+
+/// What came out of a solve.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The solution, or as much of it as converged.
+    pub solution: Solution,
+    /// Why it stopped early; absent when the scene was solved.
+    pub failure: Option<SolveError>,
+    /// Time spent reading the scene and building the model [s].
+    pub setup_seconds: f64,
+    /// Time spent solving [s].
+    pub solve_seconds: f64,
+}
+
+/// Creates the folder for the results if it is absent, so that a folder that cannot be made is known
+/// before anything is solved.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be created.
+pub fn prepare(dir: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(dir).map_err(|source| cannot_write(dir, source))
+}
+
+/// Writes all results into `dir`, which is created if absent: `probes.csv`, `reactions.csv` if the
+/// scene has joints, `plot.svg`, `scene.toml` and `summary.json`. After an early stop they hold what
+/// had converged.
+///
+/// # Errors
+/// [`Error::File`] for the first file that cannot be written.
+pub fn write(dir: &Path, scene: &Scene, outcome: &Outcome) -> Result<(), Error> {
+    let start = Instant::now();
+    prepare(dir)?;
+    csv::probes(dir, scene, &outcome.solution)?;
+    if !scene.joint.is_empty() {
+        csv::reactions(dir, scene, &outcome.solution)?;
+    }
+    svg::plot(dir, scene, &outcome.solution)?;
+    scene_file(dir, scene)?;
+    // Last, so that it holds the time of the others.
+    summary::write(dir, scene, outcome, start.elapsed().as_secs_f64())
+}
+
+/// The scene as solved, defaults filled in; it can be run again.
+fn scene_file(dir: &Path, scene: &Scene) -> Result<(), Error> {
+    let path = dir.join("scene.toml");
+    let text = toml::to_string(&scene.with_defaults())
+        .map_err(|error| cannot_write(&path, std::io::Error::other(error)))?;
+    write_text(path, &text)
+}
+
+fn write_text(path: PathBuf, text: &str) -> Result<(), Error> {
+    std::fs::write(&path, text).map_err(|source| cannot_write(&path, source))
+}
+
+fn cannot_write(path: &Path, source: std::io::Error) -> Error {
+    Error::File { action: "write", path: path.to_owned(), source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENES: [&str; 2] = [
+        r#"
+title = "every \"table\""
+gravity = [0, 0, -9.81]
+[[rod]]
+name = "helix"
+curve = { kind = "helix", coils = 10, radius = 10e-3, pitch = 5e-3, origin = [1, 2, 3] }
+section = { kind = "circle", diameter = 1e-3, inner_diameter = 1e-4 }
+material = { young_modulus = 1e11, poisson_ratio = 0.2, density = 7850 }
+elements = 75
+degree = 2
+reference = { kind = "fit", samples = 301 }
+[[rod]]
+name = "line"
+curve = { kind = "line", from = [0, 0, 0], to = [0, 0, 1], normal = [1, 0, 1] }
+section = { kind = "custom", axial = 1, shear_y = 1, shear_z = 1, torsion = 1, bending_y = 1, bending_z = 0.1 }
+elements = 3
+degree = 1
+interpolation = "se3"
+node_spacing = "equal"
+quadrature = "full"
+gravity = false
+[[joint]]
+kind = "revolute"
+between = ["helix@0", "ground"]
+axis = [0, 0, 2]
+point = [0, 0, 0.1]
+[[load]]
+kind = "force"
+on = "line@1"
+value = [0, 0, 0.1]
+basis = "body"
+offset = [0, 0.3333333333333333, 0]
+time = [[0, 0], [0.5, 1]]
+[[load]]
+kind = "line_moment"
+on = "line"
+value = [0, 0, 1e-300]
+time = "constant"
+[[probe]]
+name = "tip"
+on = "line@0.7"
+angles = "zyx"
+[statics]
+increments = 5
+tolerance = 1e-8
+newton = "displacement"
+coordinates = "quaternions"
+[plot]
+slope = 65.1
+"#,
+        r#"
+[[rod]]
+name = "arc"
+curve = { kind = "arc", radius = 2, angle = 1, orientation = [1, 1, 0, 0] }
+section = { kind = "rectangle", width = 0.1, height = 0.2, torsion_constant = 1e-5 }
+material = { young_modulus = 2e9, shear_modulus = 1e9 }
+elements = 1
+degree = 8
+[statics]
+"#,
+    ];
+
+    #[test]
+    fn the_scene_reads_back_equal() {
+        for text in SCENES {
+            let scene = Scene::from_toml(text).unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            scene_file(folder.path(), &scene).unwrap();
+            let again = Scene::from_file(folder.path().join("scene.toml")).unwrap();
+            assert_eq!(scene.with_defaults(), again);
+        }
+    }
+
+    #[test]
+    fn a_file_where_the_folder_should_be_is_a_write_error() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let error = prepare(file.path()).unwrap_err();
+        assert!(matches!(error, Error::File { action: "write", .. }));
+    }
+}

@@ -1,0 +1,69 @@
+//! `summary.json`: how it ended and what it took.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Outcome, cannot_write, write_text};
+use crate::error::Error;
+use crate::scene::Scene;
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    status: &'static str,
+    message: String,
+    title: Option<&'a str>,
+    analysis: &'static str,
+    unknowns: usize,
+    increments: usize,
+    rejected: usize,
+    newton_iterations: usize,
+    most_iterations: usize,
+    factorizations: usize,
+    residual: f64,
+    seconds: Seconds,
+    version: &'static str,
+    warnings: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Seconds {
+    setup: f64,
+    solve: f64,
+    output: f64,
+}
+
+/// Writes the summary; `output_seconds` is the time the other files took.
+pub(super) fn write(dir: &Path, scene: &Scene, outcome: &Outcome, output_seconds: f64) -> Result<(), Error> {
+    let solution = &outcome.solution;
+    let statistics = &solution.statistics;
+    let (status, message) = match &outcome.failure {
+        None => ("solved", "the whole load is carried".to_owned()),
+        Some(error) => ("stopped", error.to_string()),
+    };
+    let summary = Summary {
+        status,
+        message,
+        title: scene.title.as_deref(),
+        analysis: "statics",
+        unknowns: solution.unknowns,
+        increments: statistics.increments,
+        rejected: statistics.rejected,
+        newton_iterations: statistics.newton_iterations,
+        most_iterations: statistics.most_iterations,
+        factorizations: statistics.factorizations,
+        residual: statistics.residual,
+        seconds: Seconds {
+            setup: outcome.setup_seconds,
+            solve: outcome.solve_seconds,
+            output: output_seconds,
+        },
+        version: env!("CARGO_PKG_VERSION"),
+        warnings: &solution.warnings,
+    };
+    let path = dir.join("summary.json");
+    let mut text =
+        serde_json::to_string_pretty(&summary).map_err(|error| cannot_write(&path, error.into()))?;
+    text.push('\n');
+    write_text(path, &text)
+}

@@ -1,0 +1,188 @@
+//! A case: a problem, its source, and checks that each name a quantity, a reference, a bound and the bound's reason.
+
+use std::error::Error;
+use std::fmt::Write;
+
+/// What a case's function returns: an error stands for a problem that could not be solved at all.
+pub type Outcome = Result<(), Box<dyn Error>>;
+
+/// One named test.
+pub struct Case {
+    /// `problem::what`, the name to filter by.
+    pub name: &'static str,
+    /// Where problem and reference come from.
+    pub source: &'static str,
+    /// Solves and checks.
+    pub run: fn(&mut Checks) -> Outcome,
+}
+
+/// What a reference is worth, strongest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A closed form, or the continuous equations solved without finite elements.
+    ClosedForm,
+    /// An order of convergence.
+    Order,
+    /// Something that must not change.
+    Invariant,
+    /// Another program's figure.
+    CrossCode,
+    /// A printed figure.
+    Published,
+    /// Our own figure, against regression only.
+    Pinned,
+}
+
+/// One comparison.
+#[derive(Clone, Debug)]
+pub struct Check {
+    pub kind: Kind,
+    pub quantity: String,
+    pub measured: f64,
+    pub reference: f64,
+    /// What is held against the bound.
+    pub error: f64,
+    pub bound: f64,
+    /// Why the bound is what it is.
+    pub reason: &'static str,
+}
+
+impl Check {
+    /// False for NaN as well.
+    pub fn holds(&self) -> bool {
+        self.error <= self.bound
+    }
+}
+
+/// The checks of a case.
+#[derive(Default)]
+pub struct Checks {
+    list: Vec<Check>,
+}
+
+impl Checks {
+    /// |measured − reference| ≤ bound.
+    pub fn absolute(
+        &mut self,
+        kind: Kind,
+        quantity: impl Into<String>,
+        (measured, reference): (f64, f64),
+        bound: f64,
+        reason: &'static str,
+    ) {
+        let error = (measured - reference).abs();
+        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+    }
+
+    /// |measured − reference| ≤ bound · |reference|.
+    pub fn relative(
+        &mut self,
+        kind: Kind,
+        quantity: impl Into<String>,
+        (measured, reference): (f64, f64),
+        bound: f64,
+        reason: &'static str,
+    ) {
+        let error = ((measured - reference) / reference).abs();
+        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+    }
+
+    /// |measured − reference| ≤ bound in the Euclidean norm; the table shows the norms.
+    pub fn vector(
+        &mut self,
+        kind: Kind,
+        quantity: impl Into<String>,
+        (measured, reference): ([f64; 3], [f64; 3]),
+        bound: f64,
+        reason: &'static str,
+    ) {
+        let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let error = norm(std::array::from_fn(|k| measured[k] - reference[k]));
+        let (measured, reference) = (norm(measured), norm(reference));
+        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+    }
+
+    /// value ≤ bound, for an error that was measured already.
+    pub fn below(
+        &mut self,
+        kind: Kind,
+        quantity: impl Into<String>,
+        value: f64,
+        bound: f64,
+        reason: &'static str,
+    ) {
+        let quantity = quantity.into();
+        self.push(Check { kind, quantity, measured: value, reference: 0.0, error: value, bound, reason });
+    }
+
+    /// value ≥ bound, for something that must be seen to be large.
+    pub fn above(
+        &mut self,
+        kind: Kind,
+        quantity: impl Into<String>,
+        value: f64,
+        bound: f64,
+        reason: &'static str,
+    ) {
+        let quantity = format!("{} (at least {bound:.3e})", quantity.into());
+        self.push(Check {
+            kind,
+            quantity,
+            measured: value,
+            reference: bound,
+            error: bound - value,
+            bound: 0.0,
+            reason,
+        });
+    }
+
+    /// The order ln(e₁/e₂)/ln(n₂/n₁) of the finest pair of meshes with n₁ < n₂ elements, against the expected one.
+    pub fn order(
+        &mut self,
+        quantity: impl Into<String>,
+        meshes: &[usize],
+        errors: &[f64],
+        (expected, tolerance): (f64, f64),
+        reason: &'static str,
+    ) {
+        let last = meshes.len().min(errors.len());
+        let measured = if last < 2 {
+            f64::NAN
+        } else {
+            (errors[last - 2] / errors[last - 1]).ln()
+                / (meshes[last - 1] as f64 / meshes[last - 2] as f64).ln()
+        };
+        let errors: Vec<String> = errors.iter().map(|error| format!("{error:.3e}")).collect();
+        let quantity = format!("{}: order on {meshes:?}, errors [{}]", quantity.into(), errors.join(", "));
+        let error = (measured - expected).abs();
+        let (kind, reference, bound) = (Kind::Order, expected, tolerance);
+        self.push(Check { kind, quantity, measured, reference, error, bound, reason });
+    }
+
+    fn push(&mut self, check: Check) {
+        self.list.push(check);
+    }
+
+    /// Whether there are checks and all of them hold.
+    pub fn hold(&self) -> bool {
+        !self.list.is_empty() && self.list.iter().all(Check::holds)
+    }
+
+    /// The checks as text, those that fail first.
+    pub fn table(&self) -> String {
+        let mut sorted: Vec<&Check> = self.list.iter().collect();
+        sorted.sort_by_key(|check| check.holds());
+        let mut text = String::new();
+        for check in sorted {
+            let verdict = if check.holds() { "ok    " } else { "FAILED" };
+            let Check { kind, quantity, measured, reference, error, bound, reason, .. } = check;
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{verdict} {kind:?}: {quantity}: {measured:.12e}, reference {reference:.12e}, \
+                 error {error:.3e}, bound {bound:.3e} ({reason})"
+            );
+        }
+        text
+    }
+}
