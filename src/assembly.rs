@@ -124,6 +124,12 @@ impl Workspace {
     /// The residual of what was evaluated last; NaN if a number overflowed.
     pub fn residual(&self, model: &Model, state: &State) -> Residual {
         let mut result = Residual::default();
+        if let LinearSystem::Quaternions(_) = self.system {
+            // Eq. (17), a pure number in either test.
+            let constraint = |sum, p: &Vector4<f64>| largest(sum, (p.norm_squared() - 1.0).abs());
+            result.absolute = state.quaternions().iter().fold(0.0, constraint);
+            result.relative = result.absolute;
+        }
         for (rod, work) in model.rods.iter().zip(&self.rods) {
             let poses = &state.poses()[rod.range.clone()];
             let (mut force, mut moment) = (0.0, 0.0);

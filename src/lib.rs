@@ -77,6 +77,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Units stand in brackets, [m]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod assembly;
 pub mod curve;
 pub mod element;

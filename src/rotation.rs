@@ -110,7 +110,8 @@ pub fn quaternion_of(a: &Matrix3<f64>) -> Vector4<f64> {
 ///
 /// Newton's iteration R ← ½ (R + R⁻ᵀ) (Higham 1986), quadratically convergent.
 pub fn polar_rotation(m: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-    if !(m.determinant() > 1e-12 * m.norm().powi(3)) {
+    let determinant = m.determinant();
+    if determinant.is_nan() || determinant <= 1e-12 * m.norm().powi(3) {
         return None;
     }
     let mut r = *m;
@@ -221,12 +222,12 @@ fn log_coefficients(theta: f64) -> (f64, f64) {
         2.174_868_698_558_062e-16,
         5.509_002_828_360_23e-18,
         1.395_446_468_581_252e-19,
-        3.534_707_039_629_467_5e-21,
+        3.534_707_039_629_467e-21,
         8.953_517_427_037_546e-23,
         2.267_952_452_337_683e-24,
         5.744_790_668_872_202e-26,
         1.455_172_475_614_865e-27,
-        3.685_994_940_665_310_6e-29,
+        3.685_994_940_665_31e-29,
     ];
     const D1: [f64; 17] = doubled_derivative(&D);
     let x = theta * theta;
@@ -305,7 +306,8 @@ pub fn exp_se3(twist: &Twist) -> (Matrix3<f64>, Vector3<f64>) {
 /// Log(A, r) = (V(ψ)⁻¹ r, ψ) with ψ = log A; `None` within 1e-6 of half a turn, where ψ is ambiguous.
 pub fn log_se3(a: &Matrix3<f64>, r: &Vector3<f64>) -> Option<Twist> {
     let rotation = log_so3(a);
-    if !(rotation.norm() < PI - 1e-6) {
+    let angle = rotation.norm();
+    if angle.is_nan() || angle >= PI - 1e-6 {
         return None;
     }
     // V⁻¹ = J_l⁻¹ = J_r⁻ᵀ.

@@ -7,10 +7,13 @@ pub fn all() -> Vec<Case> {
     vec![Case { name: "harness::wrong_references_fail", source: "this harness", run: wrong_references_fail }]
 }
 
+/// What is tried, whether it should pass, and the checks.
+type Attempt = (&'static str, bool, fn(&mut Checks));
+
 const REASON: &str = "made up for this test";
 
 fn wrong_references_fail(checks: &mut Checks) -> Outcome {
-    let passes: [(&str, bool, fn(&mut Checks)); 10] = [
+    let attempts: [Attempt; 10] = [
         ("no checks at all", false, |_| ()),
         ("a right value", true, |c| c.relative(Kind::ClosedForm, "", (1.0, 1.0 + 1e-9), 1e-8, REASON)),
         ("a wrong value", false, |c| c.relative(Kind::ClosedForm, "", (1.0, 1.1), 1e-8, REASON)),
@@ -27,7 +30,7 @@ fn wrong_references_fail(checks: &mut Checks) -> Outcome {
             c.below(Kind::Invariant, "", 2.0, 1.0, REASON);
         }),
     ];
-    for (name, expected, run) in passes {
+    for (name, expected, run) in attempts {
         let mut inner = Checks::default();
         run(&mut inner);
         let verdict = f64::from(u8::from(inner.hold()));

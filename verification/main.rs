@@ -1,12 +1,16 @@
 //! The verification suite: every number of the solver held against something it did not compute.
 //!
-//! `cargo test --release --test verification` runs all of it, `… -- spring` what has "spring" in its name.
+//! `cargo test --release --test verification` runs all of it, `… -- spring` what has "spring" in its name,
+//! `… -- --nocapture` prints every check with its numbers.
 
 mod case;
 mod cases;
+mod continuous;
 mod harness;
 mod measure;
+mod pieces;
 mod placement;
+mod tip;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 
@@ -14,15 +18,19 @@ use case::{Case, Checks};
 
 fn main() {
     let arguments = Arguments::from_args();
-    let trials = cases::all().into_iter().chain(harness::all()).map(trial).collect();
+    let show = arguments.nocapture;
+    let trials = cases::all().into_iter().chain(harness::all()).map(|case| trial(case, show)).collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
 
 /// A case passes if it has checks and every one of them holds.
-fn trial(case: Case) -> Trial {
+fn trial(case: Case, show: bool) -> Trial {
     Trial::test(case.name, move || {
         let mut checks = Checks::default();
         (case.run)(&mut checks).map_err(|error| Failed::from(format!("{}\n{}", error, checks.table())))?;
+        if show {
+            eprintln!("{}\n{}", case.name, checks.table());
+        }
         if checks.hold() {
             Ok(())
         } else {

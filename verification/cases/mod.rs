@@ -1,10 +1,29 @@
 //! The cases, one file a problem.
 
+mod bend_45;
+mod cantilever;
+mod continuous;
+mod convergence_orders;
+mod princeton;
 mod roll_up;
+mod scenes;
+mod straight_to_helix;
 
 use crate::case::Case;
 
 /// Every case.
 pub fn all() -> Vec<Case> {
-    [roll_up::all()].into_iter().flatten().collect()
+    [
+        bend_45::all(),
+        cantilever::all(),
+        continuous::all(),
+        convergence_orders::all(),
+        princeton::all(),
+        roll_up::all(),
+        scenes::all(),
+        straight_to_helix::all(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
