@@ -4,10 +4,10 @@ use crate::assembly::{LoadLevel, Workspace, place_supports};
 use crate::element::Stress;
 use crate::interpolation::Increment;
 use crate::model::Model;
-use crate::newton::{Newton, NotConverged, Test};
+use crate::newton::{Converged, Newton, NotConverged, Test};
 use crate::recorder::Recorder;
 use crate::scene::Statics;
-use crate::solution::{Solution, SolveError, SolveFailure, Statistics, StopReason};
+use crate::solution::{Solution, SolveError, SolveFailure, Statistics};
 use crate::state::State;
 
 /// Solves for the load factors from 0 to 1; `progress` hears of every accepted increment.
@@ -46,7 +46,7 @@ const FIRST_ROTATION: f64 = 0.6;
 const UNKNOWN_STEP: f64 = 1e-3;
 /// Iterations an increment should need; fewer let the next one grow.
 const WANTED_ITERATIONS: f64 = 7.0;
-/// An increment that needs more is cheaper to halve.
+/// An increment that needs more is cheaper to retry with a quarter.
 const PATIENCE: usize = 12;
 /// Smallest increment, in first ones: the path has met a point that no increment of the load can pass.
 const SMALLEST: f64 = 1e-6;
@@ -88,16 +88,22 @@ impl<'a> Path<'a> {
     }
 
     fn follow(&mut self, increments: Option<usize>) -> Result<(), SolveError> {
-        if self.model.loaded_at_start() {
+        let brought_up = if self.model.loaded_at_start() {
             self.last.place = -1.0;
-            self.automatic(0.0)?;
+            let outcome = self.automatic(0.0);
             self.before = None;
             self.statistics.increments = 0;
-        }
+            outcome
+        } else {
+            Ok(())
+        };
+        // The first row is the start, also where the loads that act at once could not be brought up in full.
+        let start = level(self.last.place);
         self.work
-            .evaluate(self.model, &self.last.state, &level(0.0))
-            .and_then(|()| self.record())
+            .evaluate(self.model, &self.last.state, &start)
+            .and_then(|()| self.recorder.record(self.model, 0.0, &self.last.state, &self.work))
             .map_err(|reason| self.error(0.0, &NotConverged { iterations: 0, residual: 0.0, reason }))?;
+        brought_up?;
         match increments {
             Some(count) => self.equal(count),
             None => self.automatic(1.0),
@@ -175,21 +181,21 @@ impl<'a> Path<'a> {
         let converged =
             newton.solve(self.model, &level(place), &mut state, &mut self.work, &mut self.statistics)?;
         state.normalize();
+        let Converged { iterations, residual } = converged;
+        if place > 0.0 {
+            self.recorder.record(self.model, place, &state, &self.work).map_err(|reason| NotConverged {
+                iterations,
+                residual,
+                reason,
+            })?;
+        }
         let stresses = self.work.rods.iter().map(|rod| rod.stresses.clone()).collect();
         self.before = Some(std::mem::replace(&mut self.last, Point { place, state, stresses }));
         self.statistics.increments += 1;
-        self.statistics.most_iterations = self.statistics.most_iterations.max(converged.iterations);
-        self.statistics.residual = self.statistics.residual.max(converged.residual);
-        if place > 0.0 {
-            let iterations = converged.iterations;
-            self.record().map_err(|reason| NotConverged {
-                iterations,
-                residual: converged.residual,
-                reason,
-            })?;
-            (self.progress)(place, &self.statistics);
-        }
-        Ok(converged.iterations)
+        self.statistics.most_iterations = self.statistics.most_iterations.max(iterations);
+        self.statistics.residual = self.statistics.residual.max(residual);
+        (self.progress)(place.max(0.0), &self.statistics);
+        Ok(iterations)
     }
 
     /// Extrapolates state and stresses along the last increment.
@@ -216,10 +222,6 @@ impl<'a> Path<'a> {
                 stress.moment = last.moment + (last.moment - before.moment) * factor;
             }
         }
-    }
-
-    fn record(&mut self) -> Result<(), StopReason> {
-        self.recorder.record(self.model, self.last.place.max(0.0), &self.last.state, &self.work)
     }
 
     fn error(&self, place: f64, stop: &NotConverged) -> SolveError {

@@ -57,8 +57,8 @@ fn table(
     let mut writer = csv::Writer::from_path(&path).map_err(cannot_write)?;
     writer.write_record(header).map_err(cannot_write)?;
     for row in rows {
-        // The shortest digits that read back exactly.
-        let numbers = row.iter().map(|number| format!("{number:?}"));
+        // The shortest digits that read back exactly; + 0.0 turns -0.0 into 0.0.
+        let numbers = row.iter().map(|number| format!("{:?}", number + 0.0));
         writer.write_record(numbers).map_err(cannot_write)?;
     }
     writer.flush().map_err(|error| super::cannot_write(&path, error))
