@@ -168,10 +168,7 @@ impl Workspace {
                 force: &work.forces.force,
             };
             let mut target = match &mut self.system {
-                LinearSystem::Chains(chains) => {
-                    chains[index].clear();
-                    Target::Chain(&mut chains[index])
-                }
+                LinearSystem::Chains(chains) => Target::Chain(&mut chains[index]),
                 LinearSystem::Quaternions(system) => {
                     Target::Quaternions { system, first_row: QUATERNION_NODE * rod.range.start }
                 }

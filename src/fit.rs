@@ -47,13 +47,13 @@ const STEP_TOLERANCE: f64 = 1e-12;
 const MAX_ITERATIONS: usize = 100;
 
 /// θ = Log(H_target⁻¹ H).
-fn twist_from(target: &Pose, pose: &Pose) -> Option<Twist> {
+pub fn twist_from(target: &Pose, pose: &Pose) -> Option<Twist> {
     let back = target.rotation.transpose();
     log_se3(&(back * pose.rotation), &(back * (pose.position - target.position)))
 }
 
 /// The 6×6 derivative of θ with respect to (δr, δφ) of node i.
-fn twist_jacobian<const N: usize>(twist: &Twist, d: &PoseDerivative<N>, i: usize) -> Matrix6<f64> {
+pub fn twist_jacobian<const N: usize>(twist: &Twist, d: &PoseDerivative<N>, i: usize) -> Matrix6<f64> {
     let map = right_jacobian_inverse_se3(twist);
     let back = d.pose.rotation.transpose();
     let translation = map.diagonal * back * d.position_translation[i];
@@ -186,7 +186,6 @@ fn damped_solve<const N: usize>(
     damping: f64,
     increment: &mut [f64],
 ) -> Option<()> {
-    chain.clear();
     for (e, matrix) in matrices.iter().enumerate() {
         let mut damped = *matrix;
         for (i, row) in damped.iter_mut().enumerate() {

@@ -1,8 +1,9 @@
-//! Linear systems: block-tridiagonal elimination for chains, sparse LU for the rest.
+//! Linear systems: frontal elimination for chains, sparse LU for the rest.
 //!
-//! A chain of elements with nodes 0 … p couples its interior nodes to nothing else. They are condensed first,
-//! K_bb ← K_bb − K_bi K_ii⁻¹ K_ib, which leaves a block-tridiagonal system over the shared end nodes. Both stages
-//! pivot by rows within their block. Nothing is allocated after construction.
+//! A chain of elements with nodes 0 … p is eliminated from its start: to the matrix of an element is added what is
+//! left over its first node from the elements before, its first p nodes are eliminated with row pivoting among
+//! them, and what is left over its last node goes on to the next. The work is that of condensing the interior
+//! nodes and eliminating the block-tridiagonal rest, in one sweep. Nothing is allocated after construction.
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
@@ -20,243 +21,166 @@ pub const NODE: usize = 6;
 #[error("the matrix is singular or a number overflowed")]
 pub struct Singular;
 
-/// Gaussian elimination with row pivoting on the first `m` columns of the row-major m × `width` matrix `a`.
-///
-/// Leaves the multipliers below and U on and above the diagonal, and the right columns as X = A⁻¹ B.
-fn eliminate(a: &mut [f64], m: usize, width: usize, pivots: &mut [usize]) -> Result<(), Singular> {
-    for k in 0..m {
+/// Gaussian elimination of the first `count` unknowns of a square row-major matrix, with pivots among the first
+/// `count` rows: leaves the multipliers below the diagonal, U on and above it, and the Schur complement.
+#[inline]
+fn eliminate<const W: usize>(a: &mut [[f64; W]], count: usize, pivots: &mut [u8]) -> Result<(), Singular> {
+    for k in 0..count {
         let mut pivot = k;
-        for i in k + 1..m {
-            if a[i * width + k].abs() > a[pivot * width + k].abs() {
+        for i in k + 1..count {
+            if a[i][k].abs() > a[pivot][k].abs() {
                 pivot = i;
             }
         }
-        pivots[k] = pivot;
-        if pivot != k {
-            for column in 0..width {
-                a.swap(k * width + column, pivot * width + column);
-            }
-        }
-        let (head, tail) = a.split_at_mut((k + 1) * width);
-        let row = &head[k * width..];
+        pivots[k] = pivot as u8;
+        a.swap(k, pivot);
+        let (head, tail) = a.split_at_mut(k + 1);
+        let row = &head[k];
         let inverse = 1.0 / row[k];
         if !(inverse.is_finite() && inverse != 0.0) {
             return Err(Singular);
         }
-        for other in tail.chunks_exact_mut(width) {
+        for other in tail {
             let factor = other[k] * inverse;
             other[k] = factor;
-            for (x, y) in other[k + 1..].iter_mut().zip(&row[k + 1..]) {
-                *x -= factor * y;
+            for j in k + 1..W {
+                other[j] -= factor * row[j];
             }
-        }
-    }
-    for k in (0..m).rev() {
-        let (head, tail) = a.split_at_mut((k + 1) * width);
-        let row = &mut head[k * width..];
-        let (factors, right) = row.split_at_mut(m);
-        for (other, factor) in tail.chunks_exact(width).zip(&factors[k + 1..]) {
-            for (x, y) in right.iter_mut().zip(&other[m..]) {
-                *x -= factor * y;
-            }
-        }
-        let inverse = 1.0 / factors[k];
-        for x in right {
-            *x *= inverse;
         }
     }
     Ok(())
 }
 
-/// b ← A⁻¹ b with the factors of [`eliminate`].
-fn substitute(a: &[f64], m: usize, width: usize, pivots: &[usize], b: &mut [f64]) {
-    for (k, &pivot) in pivots.iter().enumerate() {
-        b.swap(k, pivot);
+/// b ← L⁻¹ b for the eliminated unknowns, and what is left of b for the others.
+#[inline]
+fn forward<const W: usize>(a: &[[f64; W]], count: usize, pivots: &[u8], b: &mut [f64]) {
+    for (k, &pivot) in pivots[..count].iter().enumerate() {
+        b.swap(k, usize::from(pivot));
     }
-    for i in 1..m {
-        let sum: f64 = (0..i).map(|k| a[i * width + k] * b[k]).sum();
-        b[i] -= sum;
-    }
-    for i in (0..m).rev() {
-        let sum: f64 = (i + 1..m).map(|k| a[i * width + k] * b[k]).sum();
-        b[i] = (b[i] - sum) / a[i * width + i];
+    for i in 1..W {
+        let known = count.min(i);
+        let (before, rest) = b.split_at_mut(i);
+        rest[0] -= dot(&a[i][..known], &before[..known]);
     }
 }
 
-/// y ← y − A x for a row-major matrix with `x.len()` columns, `stride` apart.
-fn subtract_product(a: &[f64], stride: usize, x: &[f64], y: &mut [f64]) {
-    for (row, y) in a.chunks_exact(stride).zip(y) {
-        *y -= row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
+/// b ← U⁻¹ b for the eliminated unknowns, from the last, the others being known.
+#[inline]
+fn backward<const W: usize>(a: &[[f64; W]], count: usize, b: &mut [f64]) {
+    for i in (0..count).rev() {
+        let (before, after) = b.split_at_mut(i + 1);
+        before[i] = (before[i] - dot(&a[i][i + 1..], after)) / a[i][i];
     }
+}
+
+#[inline]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Calls `$function::<W>` on the rows of a front of `$nodes` nodes, 2 to 9.
+macro_rules! with_front {
+    ($nodes:expr, $rows:expr, $as_chunks:ident, $function:ident, $($argument:expr),*) => {
+        match $nodes {
+            2 => $function($rows.$as_chunks::<{ 2 * NODE }>().0, $($argument),*),
+            3 => $function($rows.$as_chunks::<{ 3 * NODE }>().0, $($argument),*),
+            4 => $function($rows.$as_chunks::<{ 4 * NODE }>().0, $($argument),*),
+            5 => $function($rows.$as_chunks::<{ 5 * NODE }>().0, $($argument),*),
+            6 => $function($rows.$as_chunks::<{ 6 * NODE }>().0, $($argument),*),
+            7 => $function($rows.$as_chunks::<{ 7 * NODE }>().0, $($argument),*),
+            8 => $function($rows.$as_chunks::<{ 8 * NODE }>().0, $($argument),*),
+            _ => $function($rows.$as_chunks::<{ 9 * NODE }>().0, $($argument),*),
+        }
+    };
 }
 
 /// The factorised tangent of one rod.
 #[derive(Clone, Debug)]
 pub struct Chain {
     elements: usize,
-    /// m = 6 (p − 1) interior unknowns of an element.
-    interior: usize,
-    /// Per element m × (m + 12): factors of K_ii, then K_ii⁻¹ K_ib.
-    condensed: Vec<f64>,
-    /// Per element 12 × m: K_bi.
-    coupling: Vec<f64>,
-    /// Per element m pivots.
-    interior_pivots: Vec<usize>,
-    /// Per end node 6 × 12: the diagonal block, then the block to the next end node.
-    diagonal: Vec<f64>,
-    /// Per element 6 × 6: from the next end node back.
-    lower: Vec<f64>,
-    /// Per end node 6 pivots.
-    pivots: Vec<usize>,
+    /// Nodes of an element.
+    nodes: usize,
+    /// Per element the eliminated front, row-major, as wide as its unknowns.
+    fronts: Vec<f64>,
+    /// Per element the pivots of all its nodes but the last.
+    pivots: Vec<u8>,
+    /// The last node of the rod.
+    last: [[f64; NODE]; NODE],
+    last_pivots: [u8; NODE],
 }
 
-/// Columns of a row of `diagonal`.
-const WIDE: usize = 2 * NODE;
-
 impl Chain {
-    /// For a rod of `elements` elements of degree `degree`.
+    /// For a rod of `elements` elements of degree `degree`, 1 to 8.
     pub fn new(elements: usize, degree: usize) -> Self {
-        let interior = NODE * (degree - 1);
+        let width = NODE * (degree + 1);
         Self {
             elements,
-            interior,
-            condensed: vec![0.0; elements * interior * (interior + WIDE)],
-            coupling: vec![0.0; elements * WIDE * interior],
-            interior_pivots: vec![0; elements * interior],
-            diagonal: vec![0.0; (elements + 1) * NODE * WIDE],
-            lower: vec![0.0; elements * NODE * NODE],
-            pivots: vec![0; (elements + 1) * NODE],
+            nodes: degree + 1,
+            fronts: vec![0.0; elements * width * width],
+            pivots: vec![0; elements * NODE * degree],
+            last: [[0.0; NODE]; NODE],
+            last_pivots: [0; NODE],
         }
     }
 
-    /// Forgets the matrix.
-    pub fn clear(&mut self) {
-        self.diagonal.fill(0.0);
-    }
-
-    /// Adds and condenses the tangent of one element; every element once, in any order.
+    /// Adds the tangent of element e and eliminates all its nodes but the last; in order, from element 0.
     pub fn add_element<const N: usize>(
         &mut self,
         e: usize,
         tangent: &ElementTangent<N>,
     ) -> Result<(), Singular> {
-        let m = self.interior;
-        let width = m + WIDE;
-        let end = N - 1;
-        let condensed = &mut self.condensed[e * m * width..][..m * width];
-        let coupling = &mut self.coupling[e * WIDE * m..][..WIDE * m];
-        for i in 1..end {
-            let row = NODE * (i - 1);
-            for j in 1..end {
-                put(&mut condensed[row * width..], width, NODE * (j - 1), &tangent[i][j]);
-            }
-            put(&mut condensed[row * width..], width, m, &tangent[i][0]);
-            put(&mut condensed[row * width..], width, m + NODE, &tangent[i][end]);
-            put(coupling, m, row, &tangent[0][i]);
-            put(&mut coupling[NODE * m..], m, row, &tangent[end][i]);
-        }
-        eliminate(condensed, m, width, &mut self.interior_pivots[e * m..][..m])?;
-        // Row-major 12 × 12: what is left over the two end nodes.
-        let mut ends = [0.0; WIDE * WIDE];
-        for (i, a) in [0, end].into_iter().enumerate() {
-            for (j, b) in [0, end].into_iter().enumerate() {
-                put(&mut ends[i * NODE * WIDE..], WIDE, j * NODE, &tangent[a][b]);
+        let (width, count) = (NODE * N, NODE * (N - 1));
+        let front = &mut self.fronts[e * width * width..][..width * width];
+        for (i, blocks) in tangent.iter().enumerate() {
+            for (j, block) in blocks.iter().enumerate() {
+                put(&mut front[i * NODE * width + j * NODE..], width, block);
             }
         }
-        for (row, ends) in ends.chunks_exact_mut(WIDE).enumerate() {
-            for (k, condensed) in condensed.chunks_exact(width).enumerate() {
-                let factor = coupling[row * m + k];
-                for (x, y) in ends.iter_mut().zip(&condensed[m..]) {
-                    *x -= factor * y;
+        if e > 0 {
+            for (row, left) in front.chunks_exact_mut(width).zip(&self.last) {
+                for (x, left) in row.iter_mut().zip(left) {
+                    *x += left;
                 }
             }
         }
-        let diagonal = &mut self.diagonal[e * NODE * WIDE..][..2 * NODE * WIDE];
-        let lower = &mut self.lower[e * NODE * NODE..][..NODE * NODE];
-        for i in 0..NODE {
-            for j in 0..NODE {
-                diagonal[i * WIDE + j] += ends[i * WIDE + j];
-                diagonal[i * WIDE + NODE + j] = ends[i * WIDE + NODE + j];
-                lower[i * NODE + j] = ends[(NODE + i) * WIDE + j];
-                diagonal[(NODE + i) * WIDE + j] += ends[(NODE + i) * WIDE + NODE + j];
-            }
+        let pivots = &mut self.pivots[e * count..][..count];
+        with_front!(N, front, as_chunks_mut, eliminate, count, pivots)?;
+        for (row, left) in front[count * width..].chunks_exact(width).zip(&mut self.last) {
+            left.copy_from_slice(&row[count..]);
         }
         Ok(())
     }
 
-    /// Eliminates along the end nodes: W_v = D_v⁻¹ U_v, D_{v+1} ← D_{v+1} − L_v W_v.
+    /// Eliminates the last node, after all elements.
     pub fn factorize(&mut self) -> Result<(), Singular> {
-        const BLOCK: usize = NODE * WIDE;
-        for v in 0..=self.elements {
-            let (done, rest) = self.diagonal.split_at_mut((v + 1) * BLOCK);
-            let block = &mut done[v * BLOCK..];
-            eliminate(block, NODE, WIDE, &mut self.pivots[v * NODE..][..NODE])?;
-            if v == self.elements {
-                break;
-            }
-            let lower = &self.lower[v * NODE * NODE..][..NODE * NODE];
-            for (next, lower) in rest[..BLOCK].chunks_exact_mut(WIDE).zip(lower.chunks_exact(NODE)) {
-                for (factor, row) in lower.iter().zip(block.chunks_exact(WIDE)) {
-                    for (x, y) in next[..NODE].iter_mut().zip(&row[NODE..]) {
-                        *x -= factor * y;
-                    }
-                }
-            }
-        }
-        Ok(())
+        eliminate(&mut self.last, NODE, &mut self.last_pivots)
     }
 
     /// b ← K⁻¹ b, six entries a node, nodes in order along the rod.
     pub fn solve(&self, b: &mut [f64]) {
-        let m = self.interior;
-        let (width, stride) = (m + WIDE, m + NODE);
-        const BLOCK: usize = NODE * WIDE;
-        let mut ends = [0.0; WIDE];
+        let (width, count) = (NODE * self.nodes, NODE * (self.nodes - 1));
+        let front = |e: usize| &self.fronts[e * width * width..][..width * width];
         for e in 0..self.elements {
-            let element = &mut b[e * stride..][..stride + NODE];
-            let (first, rest) = element.split_at_mut(NODE);
-            let (inner, last) = rest.split_at_mut(m);
-            if m > 0 {
-                let pivots = &self.interior_pivots[e * m..][..m];
-                substitute(&self.condensed[e * m * width..][..m * width], m, width, pivots, inner);
-                ends[..NODE].copy_from_slice(first);
-                ends[NODE..].copy_from_slice(last);
-                subtract_product(&self.coupling[e * WIDE * m..][..WIDE * m], m, inner, &mut ends);
-                first.copy_from_slice(&ends[..NODE]);
-                last.copy_from_slice(&ends[NODE..]);
-            }
-            substitute(
-                &self.diagonal[e * BLOCK..][..BLOCK],
-                NODE,
-                WIDE,
-                &self.pivots[e * NODE..][..NODE],
-                first,
-            );
-            subtract_product(&self.lower[e * NODE * NODE..][..NODE * NODE], NODE, first, last);
+            let pivots = &self.pivots[e * count..][..count];
+            let b = &mut b[e * count..][..width];
+            with_front!(self.nodes, front(e), as_chunks, forward, count, pivots, b);
         }
-        let e = self.elements;
-        let last = &mut b[e * stride..][..NODE];
-        substitute(&self.diagonal[e * BLOCK..][..BLOCK], NODE, WIDE, &self.pivots[e * NODE..][..NODE], last);
+        let last = &mut b[self.elements * count..][..NODE];
+        forward(&self.last, NODE, &self.last_pivots, last);
+        backward(&self.last, NODE, last);
         for e in (0..self.elements).rev() {
-            let element = &mut b[e * stride..][..stride + NODE];
-            let (first, rest) = element.split_at_mut(NODE);
-            let (inner, last) = rest.split_at_mut(m);
-            for (row, x) in self.diagonal[e * BLOCK..][..BLOCK].chunks_exact(WIDE).zip(&mut *first) {
-                *x -= row[NODE..].iter().zip(&*last).map(|(a, x)| a * x).sum::<f64>();
-            }
-            for (row, x) in self.condensed[e * m * width..][..m * width].chunks_exact(width).zip(inner) {
-                *x -= row[m..].iter().zip(first.iter().chain(&*last)).map(|(a, x)| a * x).sum::<f64>();
-            }
+            let b = &mut b[e * count..][..width];
+            with_front!(self.nodes, front(e), as_chunks, backward, count, b);
         }
     }
 }
 
-/// Writes a 6×6 block into a row-major matrix at `column`.
+/// Writes a 6×6 block into a row-major matrix.
 #[inline]
-fn put(rows: &mut [f64], width: usize, column: usize, block: &Matrix6<f64>) {
+fn put(rows: &mut [f64], width: usize, block: &Matrix6<f64>) {
     for i in 0..NODE {
         for j in 0..NODE {
-            rows[i * width + column + j] = block[(i, j)];
+            rows[i * width + j] = block[(i, j)];
         }
     }
 }
@@ -335,7 +259,6 @@ mod tests {
         let mut chain = Chain::new(elements, degree);
         let mut sparse = Sparse::new(size);
         for _ in 0..2 {
-            chain.clear();
             sparse.clear();
             let x: Vec<f64> = (0..size).map(|_| numbers.next()).collect();
             let mut b = vec![0.0; size];
@@ -379,10 +302,11 @@ mod tests {
     #[test]
     fn singular_matrices_are_an_error() {
         let mut chain = Chain::new(2, 1);
-        chain.clear();
-        chain.add_element(0, &[[Matrix6::<f64>::zeros(); 2]; 2]).expect("nothing to condense");
-        chain.add_element(1, &[[Matrix6::<f64>::zeros(); 2]; 2]).expect("nothing to condense");
-        assert_eq!(chain.factorize(), Err(Singular));
+        assert_eq!(chain.add_element(0, &[[Matrix6::<f64>::zeros(); 2]; 2]), Err(Singular));
+        let identity = [[Matrix6::identity(), Matrix6::zeros()], [Matrix6::zeros(), Matrix6::zeros()]];
+        assert_eq!(chain.add_element(0, &identity).and_then(|()| chain.factorize()), Err(Singular));
+        let overflow = [[Matrix6::from_element(f64::INFINITY); 2]; 2];
+        assert_eq!(chain.add_element(0, &overflow), Err(Singular));
         let mut sparse = Sparse::new(1);
         sparse.add(0, 0, f64::NAN);
         assert_eq!(sparse.factorize(), Err(Singular));

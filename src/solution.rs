@@ -97,6 +97,9 @@ pub enum StopReason {
     /// Too many iterations.
     #[error("the largest number of iterations is spent")]
     Iterations,
+    /// Too many automatic increments.
+    #[error("automatic increments have become too small to arrive")]
+    Increments,
     /// A number overflowed, or the tangent is singular.
     #[error("the tangent is singular or a number overflowed")]
     Singular,

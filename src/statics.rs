@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::newton::{Converged, Newton, NotConverged, Test};
 use crate::recorder::Recorder;
 use crate::scene::Statics;
-use crate::solution::{Solution, SolveError, SolveFailure, Statistics};
+use crate::solution::{Solution, SolveError, SolveFailure, Statistics, StopReason};
 use crate::state::State;
 
 /// Solves for the load factors from 0 to 1; `progress` hears of every accepted increment.
@@ -50,6 +50,8 @@ const WANTED_ITERATIONS: f64 = 7.0;
 const PATIENCE: usize = 12;
 /// Smallest increment, in first ones: the path has met a point that no increment of the load can pass.
 const SMALLEST: f64 = 1e-6;
+/// Most increments, accepted or rejected: a path that still creeps after them leads nowhere in useful time.
+const MOST_INCREMENTS: usize = 10_000;
 
 struct Path<'a> {
     model: &'a Model,
@@ -139,6 +141,14 @@ impl<'a> Path<'a> {
                         return Err(self.error(place, &stop));
                     }
                 }
+            }
+            if self.statistics.increments + self.statistics.rejected >= MOST_INCREMENTS
+                && self.last.place < end
+            {
+                let (iterations, residual) = (0, self.statistics.residual);
+                return Err(
+                    self.error(place, &NotConverged { iterations, residual, reason: StopReason::Increments })
+                );
             }
         }
         Ok(())

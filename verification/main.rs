@@ -6,10 +6,13 @@
 mod case;
 mod cases;
 mod continuous;
+mod discrete_rod;
+mod formulas;
 mod harness;
 mod measure;
 mod pieces;
 mod placement;
+mod states;
 mod tip;
 
 use libtest_mimic::{Arguments, Failed, Trial};

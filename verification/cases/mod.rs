@@ -4,7 +4,13 @@ mod bend_45;
 mod cantilever;
 mod continuous;
 mod convergence_orders;
+mod derivatives;
+mod loads;
+mod objectivity;
+mod path_independence;
+mod petrov_galerkin;
 mod princeton;
+mod reactions;
 mod roll_up;
 mod scenes;
 mod straight_to_helix;
@@ -18,7 +24,13 @@ pub fn all() -> Vec<Case> {
         cantilever::all(),
         continuous::all(),
         convergence_orders::all(),
+        derivatives::all(),
+        loads::all(),
+        objectivity::all(),
+        path_independence::all(),
+        petrov_galerkin::all(),
         princeton::all(),
+        reactions::all(),
         roll_up::all(),
         scenes::all(),
         straight_to_helix::all(),
