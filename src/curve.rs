@@ -223,3 +223,79 @@ fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
     }
     Ok(poses)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn placed(shape: CurveShape) -> PlacedCurve {
+        PlacedCurve::new(&shape.into(), "rod.0.curve").expect("no file to read")
+    }
+
+    fn line(from: [f64; 3], to: [f64; 3], normal: Option<[f64; 3]>) -> PlacedCurve {
+        placed(CurveShape::Line { length: None, from: Some(from), to: Some(to), normal })
+    }
+
+    fn close(a: Vector3<f64>, b: [f64; 3]) -> bool {
+        (a - Vector3::from(b)).norm() < 1e-14
+    }
+
+    /// e_x is the direction of the derivative, the frame is a rotation, and it turns as much as it says.
+    #[test]
+    fn frames_follow_their_curves() {
+        let curves = [
+            line([1.0, 2.0, 3.0], [-1.0, 0.5, 2.0], Some([1.0, 1.0, 1.0])),
+            placed(CurveShape::Arc { radius: 2.0, angle: 1.3 }),
+            placed(CurveShape::Helix { coils: 1.7, radius: 0.3, pitch: -0.2, phase: 0.4 }),
+        ];
+        for curve in curves {
+            let mut turned = 0.0;
+            for k in 0..1000 {
+                let xi = k as f64 / 1000.0;
+                let (now, next) = (curve.pose(xi), curve.pose(xi + 1e-3));
+                let (before, after) = (curve.pose(xi - 1e-6), curve.pose(xi + 1e-6));
+                let tangent = (after.position - before.position).normalize();
+                assert!((now.rotation.column(0) - tangent).norm() < 1e-8);
+                assert!((now.rotation.transpose() * now.rotation - Matrix3::identity()).amax() < 1e-15);
+                assert!(now.rotation.determinant() > 0.0);
+                turned += crate::rotation::log_so3(&(now.rotation.transpose() * next.rotation)).norm();
+            }
+            assert!((turned - curve.total_turn()).abs() < 1e-10, "{turned}");
+        }
+    }
+
+    #[test]
+    fn the_arc_bends_towards_e_y_and_the_helix_rises_from_its_phase() {
+        let end = placed(CurveShape::Arc { radius: 2.0, angle: std::f64::consts::FRAC_PI_2 }).pose(1.0);
+        assert!(close(end.position, [2.0, 2.0, 0.0]));
+        assert!(close(end.rotation.column(1).into(), [-1.0, 0.0, 0.0]), "e_y points to the centre");
+        let phase = std::f64::consts::PI;
+        let helix = placed(CurveShape::Helix { coils: 3.0, radius: 0.5, pitch: 0.1, phase });
+        assert!(close(helix.pose(0.0).position, [0.0, 0.5, 0.0]));
+        assert!(close(helix.pose(1.0).position, [0.0, 0.5, 0.3]));
+        assert!(close(helix.pose(0.0).rotation.column(1).into(), [0.0, -1.0, 0.0]), "normal to the axis");
+    }
+
+    #[test]
+    fn lines_choose_their_normal() {
+        let normal = |curve: PlacedCurve| curve.pose(0.5).rotation.column(1).into_owned();
+        assert!(close(normal(line([0.0; 3], [2.0, 0.0, 0.0], None)), [0.0, 1.0, 0.0]), "e_z × e_x");
+        assert!(close(normal(line([0.0; 3], [0.0, 3.0, 0.0], None)), [-1.0, 0.0, 0.0]), "e_z × e_y");
+        assert!(close(normal(line([0.0; 3], [0.0, 0.0, -1.0], None)), [0.0, 1.0, 0.0]), "e_y along e_z");
+        let oblique = line([0.0; 3], [1.0, 0.0, 0.0], Some([5.0, 0.0, -2.0]));
+        assert!(close(normal(oblique), [0.0, 0.0, -1.0]), "projected");
+        let along = placed(CurveShape::Line { length: Some(2.0), from: None, to: None, normal: None });
+        assert!(close(along.pose(1.0).position, [2.0, 0.0, 0.0]));
+        assert_eq!(along.pose(0.3).rotation, Matrix3::identity());
+    }
+
+    #[test]
+    fn origin_and_orientation_place_a_curve() {
+        let mut curve = Curve::from(CurveShape::Arc { radius: 1.0, angle: 1.0 });
+        curve.origin = [1.0, 2.0, 3.0];
+        curve.orientation = [2.0, 0.0, 0.0, 2.0]; // a quarter turn about e_z, of any norm
+        let start = PlacedCurve::new(&curve, "").expect("no file to read").pose(0.0);
+        assert!(close(start.position, [1.0, 2.0, 3.0]));
+        assert!(close(start.rotation.column(0).into(), [0.0, 1.0, 0.0]));
+    }
+}

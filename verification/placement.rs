@@ -1,6 +1,6 @@
 //! The same scene turned and shifted in space: a rod does not know where it is.
 
-use cosserat::scene::{Basis, CurveShape, Scene};
+use cosserat::scene::{Basis, Scene};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rigid motion x ↦ shift + R x of a whole scene.
@@ -37,7 +37,6 @@ impl Placement {
         let place = |v: [f64; 3]| -> [f64; 3] { (self.shift + self.rotation * Vector3::from(v)).into() };
         scene.gravity = scene.gravity.map(turn);
         for rod in &mut scene.rod {
-            assert!(!matches!(rod.curve.shape, CurveShape::Poses { .. }) || rod.curve.origin == [0.0; 3]);
             rod.curve.origin = place(rod.curve.origin);
             let [w, x, y, z] = rod.curve.orientation;
             let before = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));

@@ -10,7 +10,9 @@ mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
 mod princeton;
+mod probes;
 mod reactions;
+mod reference;
 mod roll_up;
 mod scenes;
 mod straight_to_helix;
@@ -30,7 +32,9 @@ pub fn all() -> Vec<Case> {
         path_independence::all(),
         petrov_galerkin::all(),
         princeton::all(),
+        probes::all(),
         reactions::all(),
+        reference::all(),
         roll_up::all(),
         scenes::all(),
         straight_to_helix::all(),

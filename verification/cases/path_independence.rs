@@ -5,13 +5,13 @@ use std::error::Error;
 use std::f64::consts::FRAC_PI_4;
 
 use cosserat::scene::{
-    Basis, Coordinates, CurveShape, Joint, JointKind, LoadKind, Material, NewtonKind, Rod, Scene, Section,
-    Statics,
+    Basis, Coordinates, CurveShape, Joint, JointKind, LoadKind, NewtonKind, Rod, Scene, Statics,
 };
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::{clamp, load, position, probe, solve};
+use crate::pieces::{circle, line, rectangle, young_poisson};
 use crate::placement::{Placement, placements};
 
 /// The cases of this file.
@@ -76,22 +76,10 @@ const HINGED: Bounds = Bounds {
              the length at arms of a metre",
 };
 
-fn circle(diameter: f64) -> Section {
-    Section::Circle { diameter, inner_diameter: None, shear_factor: 1.0, torsion_constant: None }
-}
-
-fn material(young_modulus: f64, poisson_ratio: f64) -> Option<Material> {
-    Some(Material {
-        young_modulus: Some(young_modulus),
-        poisson_ratio: Some(poisson_ratio),
-        ..Material::default()
-    })
-}
-
 fn spring() -> Scene {
     let helix = CurveShape::Helix { coils: 10.0, radius: 0.01, pitch: 0.005, phase: 0.0 };
     Scene {
-        rod: vec![Rod::new("wire", helix, circle(1e-3), material(1e11, 0.2), 75, 2)],
+        rod: vec![Rod::new("wire", helix, circle(1e-3), Some(young_poisson(1e11, 0.2)), 75, 2)],
         joint: vec![clamp("wire@0")],
         load: vec![load(LoadKind::Force, "wire@1", [0.0, 0.0, 2.0])],
         probe: vec![probe("end", "wire@1"), probe("middle", "wire@0.5")],
@@ -101,9 +89,8 @@ fn spring() -> Scene {
 
 fn bend() -> Scene {
     let arc = CurveShape::Arc { radius: 100.0, angle: FRAC_PI_4 };
-    let square = Section::Rectangle { width: 1.0, height: 1.0, shear_factor: 1.0, torsion_constant: None };
     Scene {
-        rod: vec![Rod::new("bend", arc, square, material(1e7, 0.0), 8, 3)],
+        rod: vec![Rod::new("bend", arc, rectangle(1.0, 1.0, None), Some(young_poisson(1e7, 0.0)), 8, 3)],
         joint: vec![clamp("bend@0")],
         load: vec![load(LoadKind::Force, "bend@1", [0.0, 0.0, 600.0])],
         probe: vec![probe("end", "bend@1"), probe("middle", "bend@0.5")],
@@ -112,7 +99,6 @@ fn bend() -> Scene {
 }
 
 fn hinged() -> Scene {
-    let line = CurveShape::Line { length: Some(2.0), from: None, to: None, normal: None };
     let joint = |kind, on: &str, point, axis| Joint {
         name: None,
         kind,
@@ -127,7 +113,7 @@ fn hinged() -> Scene {
     let mut twist = load(LoadKind::Moment, "rod@0.5", [1.5, 0.0, 0.8]);
     twist.basis = Basis::Body;
     Scene {
-        rod: vec![Rod::new("rod", line, circle(0.04), material(1e8, 0.3), 8, 3)],
+        rod: vec![Rod::new("rod", line(2.0), circle(0.04), Some(young_poisson(1e8, 0.3)), 8, 3)],
         joint: vec![
             joint(JointKind::Revolute, "rod@0", [-0.1, 0.05, 0.2], Some([0.3, 1.0, -0.6])),
             joint(JointKind::Spherical, "rod@1", [2.1, -0.1, 0.15], None),
