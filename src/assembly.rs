@@ -8,7 +8,7 @@ use crate::interpolation::{Increment, Pose};
 use crate::linear_solver::{Chain, NODE, Singular, Sparse};
 use crate::load::Course;
 use crate::model::{Model, RodModel};
-use crate::rod::{NodalForces, NodalTerms, QUATERNION_NODE, TangentError, Target};
+use crate::rod::{Applied, NodalForces, QUATERNION_NODE, TangentError, Target};
 use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::Coordinates;
 use crate::solution::StopReason;
@@ -88,8 +88,8 @@ impl Workspace {
         };
         let work = |rod: &RodModel| RodWork {
             forces: NodalForces::new(rod.nodes),
-            constitutive: vec![Stress::default(); rod.reference.points.len()],
-            stresses: vec![Stress::default(); rod.reference.points.len()],
+            constitutive: vec![Stress::default(); rod.properties.points.len()],
+            stresses: vec![Stress::default(); rod.properties.points.len()],
             increments: vec![Increment::default(); rod.nodes],
             load_tangents: rod.point_loads.iter().map(|load| (load.node, Matrix6::zeros())).collect(),
             line_load: LineLoad::default(),
@@ -104,14 +104,7 @@ impl Workspace {
             work.forces.clear();
             work.line_load = line_load(rod, level);
             rod.kernel
-                .add_forces(
-                    poses,
-                    &rod.reference,
-                    &rod.stiffness,
-                    &work.line_load,
-                    &mut work.constitutive,
-                    &mut work.forces,
-                )
+                .add_forces(poses, &rod.properties, &work.line_load, &mut work.constitutive, &mut work.forces)
                 .map_err(|element| StopReason::HalfTurn { rod: index, element })?;
             for load in &rod.point_loads {
                 let (force, moment) = load.rows(&poses[load.node], level.factor(&load.course));
@@ -162,7 +155,8 @@ impl Workspace {
             for (load, tangent) in rod.point_loads.iter().zip(&mut work.load_tangents) {
                 tangent.1 = load.tangent(&poses[load.node], level.factor(&load.course));
             }
-            let terms = NodalTerms {
+            let applied = Applied {
+                line_load: &work.line_load,
                 tangents: &work.load_tangents,
                 supports: &rod.supports,
                 force: &work.forces.force,
@@ -173,9 +167,15 @@ impl Workspace {
                     Target::Quaternions { system, first_row: QUATERNION_NODE * rod.range.start }
                 }
             };
-            let material = (&rod.reference, &rod.stiffness, &work.line_load);
             rod.kernel
-                .assemble_tangent(state, rod.range.clone(), material, &work.stresses, &terms, &mut target)
+                .assemble_tangent(
+                    state,
+                    rod.range.clone(),
+                    &rod.properties,
+                    &work.stresses,
+                    &applied,
+                    &mut target,
+                )
                 .map_err(|error| match error {
                     TangentError::HalfTurn(element) => StopReason::HalfTurn { rod: index, element },
                     TangentError::Singular => StopReason::Singular,
@@ -215,7 +215,7 @@ impl Workspace {
             rod.kernel
                 .advance_stresses(
                     poses,
-                    (&rod.reference, &rod.stiffness),
+                    &rod.properties,
                     &work.increments,
                     &work.constitutive,
                     &mut work.stresses,
@@ -360,8 +360,9 @@ fn tolerance_scales(rod: &RodModel, work: &RodWork, poses: &[Pose]) -> (f64, f64
     let largest_of = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let reach = poses.iter().map(|pose| pose.position.amax()).fold(0.0, f64::max);
     let amplification = 8.0 * f64::EPSILON * (rod.degree * rod.degree) as f64 / rod.element_length;
-    let force_floor = amplification * rod.stiffness.force.max() * reach;
-    let moment_floor = amplification * rod.stiffness.moment.max() + force_floor * rod.element_length;
+    let force_floor = amplification * rod.properties.stiffness.force.max() * reach;
+    let moment_floor =
+        amplification * rod.properties.stiffness.moment.max() + force_floor * rod.element_length;
     (
         largest_of(&work.forces.force_scale) + force_floor / RELATIVE_TOLERANCE,
         largest_of(&work.forces.moment_scale) + moment_floor / RELATIVE_TOLERANCE,

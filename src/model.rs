@@ -1,20 +1,20 @@
 //! Scene → Model: nodes, numbering, supports, loads and probes; frozen afterwards.
 
 mod free_motion;
+mod rod;
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 use crate::curve::PlacedCurve;
-use crate::element::{LineLoad, Stiffness};
+use crate::element::LineLoad;
 use crate::error::{Error, SceneError};
 use crate::interpolation::{HalfTurn, Pose};
 use crate::joint::Support;
 use crate::load::{Course, PointLoad};
-use crate::rod::{NODE_TOLERANCE, RodElements, RodReference, rod_elements};
-use crate::scene::{Basis, EulerSequence, JointKind, LoadKind, Reference, Scene, parse_point};
-use crate::section::{mass_per_length, stiffness};
+use crate::rod::{NODE_TOLERANCE, RodElements, RodProperties};
+use crate::scene::{EulerSequence, JointKind, LoadKind, Scene, parse_point};
 use crate::state::State;
 
 /// A rod ready to be solved. Positions are relative to the model's origin.
@@ -31,8 +31,7 @@ pub struct RodModel {
     /// Reference length of the discrete rod [m].
     pub length: f64,
     pub(crate) kernel: Box<dyn RodElements>,
-    pub(crate) stiffness: Stiffness,
-    pub(crate) reference: RodReference,
+    pub(crate) properties: RodProperties,
     /// Its nodes among those of the model.
     pub(crate) range: Range<usize>,
     /// Held nodes, ascending.
@@ -100,7 +99,10 @@ impl Model {
             warnings: Vec::new(),
         };
         for (index, curve) in curves.into_iter().enumerate() {
-            model.add_rod(scene, index, &curve.relative_to(&origin))?;
+            let (rod, nodes) =
+                rod::build(scene, index, &curve.relative_to(&origin), model.reference.poses().len())?;
+            model.rods.push(rod);
+            model.reference.append(nodes);
         }
         for index in 0..scene.load.len() {
             model.add_load(scene, index)?;
@@ -167,138 +169,6 @@ impl Model {
             })
         };
         self.rods.iter().filter_map(sentence).collect()
-    }
-
-    fn add_rod(&mut self, scene: &Scene, index: usize, curve: &PlacedCurve) -> Result<(), SceneError> {
-        let rod = &scene.rod[index];
-        let key = |name: &str| format!("rod.{index}.{name}");
-        let kernel =
-            rod_elements(rod.elements, rod.degree, rod.node_spacing, rod.interpolation, rod.quadrature)
-                .ok_or_else(|| {
-                    SceneError::new(key("interpolation"), "has no such degree", "degree 1 for se3")
-                })?;
-        let stiffness = stiffness(&rod.section, rod.material.as_ref())
-            .ok_or_else(|| SceneError::new(key("material"), "is incomplete", "two of E, G and ν"))?;
-        if !stiffness.force.iter().chain(&stiffness.moment).all(|x| x.is_normal() && *x > 0.0) {
-            return Err(SceneError::new(
-                key("section"),
-                format!(
-                    "has stiffnesses beyond all numbers: {:?} N, {:?} N m²",
-                    stiffness.force.as_slice(),
-                    stiffness.moment.as_slice()
-                ),
-                "sizes and moduli whose products are positive and finite",
-            ));
-        }
-        let positions = kernel.node_positions();
-        let widest = positions.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        let few = |problem: String, elements: usize| {
-            SceneError::new(
-                key("elements"),
-                problem,
-                format!("at least {elements} elements of degree {}", rod.degree),
-            )
-        };
-        let turn = widest * curve.total_turn();
-        if turn > 0.999 * std::f64::consts::PI {
-            let enough = (rod.elements as f64 * turn / (0.5 * std::f64::consts::PI)).ceil() as usize;
-            return Err(few(
-                format!("lets neighbouring nodes be {turn:.3} rad apart, half a turn or more"),
-                enough,
-            ));
-        }
-        let mut state = State::from_poses(positions.iter().map(|&xi| curve.pose(xi)));
-        let samples = match (curve.given_poses(), rod.reference) {
-            (Some(poses), _) => Some(poses),
-            (None, Reference::Fit { samples }) => Some(samples),
-            (None, Reference::Nodes) => None,
-        };
-        if let Some(samples) = samples {
-            self.fit(&*kernel, &mut state, curve, samples, &key("reference"))?;
-        }
-        let line_loads = self.line_loads(scene, index);
-        let reference = kernel
-            .reference(state.poses(), !line_loads.is_empty())
-            .map_err(|e| few(format!("is too coarse: element {e} is degenerate"), 2 * rod.elements))?;
-        let q = kernel.points();
-        let lengths = reference
-            .points
-            .chunks_exact(q)
-            .map(|points| points.iter().map(|point| point.jacobian).sum::<f64>() / q as f64);
-        let (length, element_length) =
-            lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, x.min(least)));
-        let first = self.reference.poses().len();
-        self.rods.push(RodModel {
-            name: rod.name.clone(),
-            elements: rod.elements,
-            degree: rod.degree,
-            nodes: positions.len(),
-            length,
-            range: first..first + positions.len(),
-            kernel,
-            stiffness,
-            reference,
-            supports: Vec::new(),
-            point_loads: Vec::new(),
-            line_loads,
-            element_length,
-        });
-        for (pose, quaternion) in state.poses().iter().zip(state.quaternions()) {
-            self.reference.push(pose.position, *quaternion);
-        }
-        Ok(())
-    }
-
-    fn fit(
-        &mut self,
-        kernel: &dyn RodElements,
-        state: &mut State,
-        curve: &PlacedCurve,
-        samples: usize,
-        key: &str,
-    ) -> Result<(), SceneError> {
-        let nodes = state.poses().len();
-        if samples < nodes {
-            return Err(SceneError::new(
-                key,
-                format!(
-                    "fits {nodes} nodes to {samples} samples, {} residuals for {} unknowns",
-                    6 * samples,
-                    6 * nodes
-                ),
-                format!("at least {nodes} samples"),
-            ));
-        }
-        let targets: Vec<Pose> = (0..samples).map(|j| curve.pose(j as f64 / (samples - 1) as f64)).collect();
-        kernel.fit(state, &targets).map_err(|error| {
-            SceneError::new(key, format!("fit failed: {error}"), "more elements or smoother poses")
-        })?;
-        Ok(())
-    }
-
-    /// Gravity and the line loads on a rod.
-    fn line_loads(&self, scene: &Scene, index: usize) -> Vec<(LineLoad, Course)> {
-        let rod = &scene.rod[index];
-        let mut result = Vec::new();
-        if let (Some(gravity), true) = (scene.gravity, rod.gravity)
-            && let Some(mass) = mass_per_length(&rod.section, rod.material.as_ref())
-        {
-            let force = Vector3::from(gravity) * mass;
-            result.push((LineLoad { force, ..LineLoad::default() }, Course::Ramp));
-        }
-        for load in scene.load.iter().filter(|load| load.on == rod.name) {
-            let value = Vector3::from(load.value);
-            let mut line = LineLoad::default();
-            match (load.kind, load.basis) {
-                (LoadKind::LineForce, Basis::Inertial) => line.force = value,
-                (LoadKind::LineForce, Basis::Body) => line.body_force = value,
-                (LoadKind::LineMoment, Basis::Inertial) => line.moment = value,
-                (LoadKind::LineMoment, Basis::Body) => line.body_moment = value,
-                (LoadKind::Force | LoadKind::Moment, _) => continue,
-            }
-            result.push((line, Course::new(load.time.as_ref(), Course::Ramp)));
-        }
-        result
     }
 
     fn add_load(&mut self, scene: &Scene, index: usize) -> Result<(), SceneError> {

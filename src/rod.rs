@@ -20,9 +20,12 @@ use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::{InterpolationKind, NodeSpacing, QuadratureKind};
 use crate::state::State;
 
-/// The undeformed rod: strains at the quadrature points of the internal forces, J at those of the line loads.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RodReference {
+/// What does not change in a solve: the stiffness, the undeformed strains at the quadrature points of the internal
+/// forces, and J at those of the line loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RodProperties {
+    /// The same all along the rod.
+    pub stiffness: Stiffness,
     /// All points of element 0, then of element 1, ….
     pub points: Vec<ReferencePoint>,
     /// J at the points of the line-load rule, in the same order; empty where no line load acts.
@@ -79,9 +82,11 @@ impl NodalForces {
     }
 }
 
-/// What acts at single nodes, for the tangent; both lists in ascending order of the nodes.
+/// What acts on a rod, for its tangent; both lists in ascending order of the nodes.
 #[derive(Clone, Copy, Debug)]
-pub struct NodalTerms<'a> {
+pub struct Applied<'a> {
+    /// The sum of the line loads.
+    pub line_load: &'a LineLoad,
     /// −∂(load rows)/∂q.
     pub tangents: &'a [(usize, Matrix6<f64>)],
     /// Held nodes.
@@ -126,18 +131,22 @@ impl From<Singular> for TangentError {
 
 /// One rod's elements; an `Err` names the element whose nodes are half a turn apart.
 pub trait RodElements: Debug + Send + Sync {
-    /// Quadrature points of the internal forces in an element.
-    fn points(&self) -> usize;
+    /// Weights of the quadrature points of the internal forces in an element.
+    fn weights(&self) -> Vec<f64>;
 
-    /// The discrete reference; with `line_loads`, J for them, too.
-    fn reference(&self, poses: &[Pose], line_loads: bool) -> Result<RodReference, usize>;
+    /// The discrete reference at given poses; with `line_loads`, J for them, too.
+    fn properties(
+        &self,
+        poses: &[Pose],
+        stiffness: Stiffness,
+        line_loads: bool,
+    ) -> Result<RodProperties, usize>;
 
     /// Adds internal forces and line loads; writes the constitutive stresses.
     fn add_forces(
         &self,
         poses: &[Pose],
-        reference: &RodReference,
-        stiffness: &Stiffness,
+        properties: &RodProperties,
         line_load: &LineLoad,
         constitutive: &mut [Stress],
         forces: &mut NodalForces,
@@ -148,9 +157,9 @@ pub trait RodElements: Debug + Send + Sync {
         &self,
         state: &State,
         nodes: Range<usize>,
-        material: (&RodReference, &Stiffness, &LineLoad),
+        properties: &RodProperties,
         stresses: &[Stress],
-        terms: &NodalTerms,
+        applied: &Applied,
         target: &mut Target,
     ) -> Result<(), TangentError>;
 
@@ -158,7 +167,7 @@ pub trait RodElements: Debug + Send + Sync {
     fn advance_stresses(
         &self,
         poses: &[Pose],
-        material: (&RodReference, &Stiffness),
+        properties: &RodProperties,
         increments: &[Increment],
         constitutive: &[Stress],
         stresses: &mut [Stress],
@@ -268,19 +277,19 @@ where
 
     /// Adds what acts at the nodes of element e and reduces its held nodes. A node shared by two elements is
     /// owned by the first.
-    fn add_nodal_terms(&self, e: usize, poses: &[Pose], terms: &NodalTerms, tangent: &mut ElementTangent<N>) {
+    fn add_nodal_terms(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
         let first = e * (N - 1);
         let owned = |node: usize| e == 0 || node > first;
-        let start = terms.tangents.partition_point(|(node, _)| *node < first);
-        for (node, block) in terms.tangents[start..].iter().take_while(|(node, _)| *node < first + N) {
+        let start = applied.tangents.partition_point(|(node, _)| *node < first);
+        for (node, block) in applied.tangents[start..].iter().take_while(|(node, _)| *node < first + N) {
             if owned(*node) {
                 tangent[node - first][node - first] += block;
             }
         }
-        let start = terms.supports.partition_point(|support| support.node < first);
-        for support in terms.supports[start..].iter().take_while(|support| support.node < first + N) {
+        let start = applied.supports.partition_point(|support| support.node < first);
+        for support in applied.supports[start..].iter().take_while(|support| support.node < first + N) {
             let node = support.node;
-            support.reduce(tangent, node - first, &poses[node].rotation, &terms.force[node], owned(node));
+            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owned(node));
         }
     }
 }
@@ -289,12 +298,17 @@ impl<const N: usize, I> RodElements for Elements<N, I>
 where
     I: Interpolation<N> + Debug + Send + Sync + 'static,
 {
-    fn points(&self) -> usize {
-        self.rule.len()
+    fn weights(&self) -> Vec<f64> {
+        self.rule.iter().map(|basis| basis.weight).collect()
     }
 
-    fn reference(&self, poses: &[Pose], line_loads: bool) -> Result<RodReference, usize> {
-        let mut result = RodReference::default();
+    fn properties(
+        &self,
+        poses: &[Pose],
+        stiffness: Stiffness,
+        line_loads: bool,
+    ) -> Result<RodProperties, usize> {
+        let mut result = RodProperties { stiffness, points: Vec::new(), load_jacobians: Vec::new() };
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             for basis in &self.rule {
@@ -320,22 +334,21 @@ where
     fn add_forces(
         &self,
         poses: &[Pose],
-        reference: &RodReference,
-        stiffness: &Stiffness,
+        properties: &RodProperties,
         line_load: &LineLoad,
         constitutive: &mut [Stress],
         forces: &mut NodalForces,
     ) -> Result<(), usize> {
         let (q, lq) = (self.rule.len(), self.load_rule.len());
-        let loaded = !reference.load_jacobians.is_empty();
+        let loaded = !properties.load_jacobians.is_empty();
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             let mut element = ElementForce::default();
-            let (points, stresses) = (&reference.points[e * q..][..q], &mut constitutive[e * q..][..q]);
-            internal_force::<N, I>(nodes, &self.rule, points, stiffness, stresses, &mut element)
+            let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
+            internal_force::<N, I>(nodes, &self.rule, points, &properties.stiffness, stresses, &mut element)
                 .map_err(|_| e)?;
             if loaded {
-                let jacobians = &reference.load_jacobians[e * lq..][..lq];
+                let jacobians = &properties.load_jacobians[e * lq..][..lq];
                 line_load_force::<N, I>(nodes, &self.load_rule, jacobians, line_load, &mut element)
                     .map_err(|_| e)?;
             }
@@ -348,26 +361,33 @@ where
         &self,
         state: &State,
         range: Range<usize>,
-        (reference, stiffness, line_load): (&RodReference, &Stiffness, &LineLoad),
+        properties: &RodProperties,
         stresses: &[Stress],
-        terms: &NodalTerms,
+        applied: &Applied,
         target: &mut Target,
     ) -> Result<(), TangentError> {
         let (q, lq) = (self.rule.len(), self.load_rule.len());
         let poses = &state.poses()[range.clone()];
-        let loaded = !reference.load_jacobians.is_empty() && line_load.turns();
+        let loaded = !properties.load_jacobians.is_empty() && applied.line_load.turns();
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             let mut tangent = zero_tangent::<N>();
-            let (points, stresses) = (&reference.points[e * q..][..q], &stresses[e * q..][..q]);
-            internal_tangent::<N, I>(nodes, &self.rule, points, stiffness, stresses, &mut tangent)
-                .map_err(|_| TangentError::HalfTurn(e))?;
+            let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
+            internal_tangent::<N, I>(
+                nodes,
+                &self.rule,
+                points,
+                &properties.stiffness,
+                stresses,
+                &mut tangent,
+            )
+            .map_err(|_| TangentError::HalfTurn(e))?;
             if loaded {
-                let jacobians = &reference.load_jacobians[e * lq..][..lq];
-                line_load_tangent::<N, I>(nodes, &self.load_rule, jacobians, line_load, &mut tangent)
+                let jacobians = &properties.load_jacobians[e * lq..][..lq];
+                line_load_tangent::<N, I>(nodes, &self.load_rule, jacobians, applied.line_load, &mut tangent)
                     .map_err(|_| TangentError::HalfTurn(e))?;
             }
-            self.add_nodal_terms(e, poses, terms, &mut tangent);
+            self.add_nodal_terms(e, poses, applied, &mut tangent);
             match target {
                 Target::Chain(chain) => chain.add_element(e, &tangent)?,
                 Target::Quaternions { system, first_row } => {
@@ -385,7 +405,7 @@ where
     fn advance_stresses(
         &self,
         poses: &[Pose],
-        (reference, stiffness): (&RodReference, &Stiffness),
+        properties: &RodProperties,
         increments: &[Increment],
         constitutive: &[Stress],
         stresses: &mut [Stress],
@@ -396,8 +416,8 @@ where
             advance_stress::<N, I>(
                 self.of(e, poses),
                 &self.rule,
-                &reference.points[points.clone()],
-                stiffness,
+                &properties.points[points.clone()],
+                &properties.stiffness,
                 self.of(e, increments),
                 &constitutive[points.clone()],
                 &mut stresses[points],

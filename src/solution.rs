@@ -104,7 +104,7 @@ pub enum StopReason {
     #[error("the tangent is singular or a number overflowed")]
     Singular,
     /// Neighbouring nodes are half a turn apart, where the relative rotation has no logarithm.
-    #[error("element {element} of rod {rod} is turned by half a turn between its nodes")]
+    #[error("element {element} of rod.{rod} is turned by half a turn between its nodes")]
     HalfTurn {
         /// Index of the rod.
         rod: usize,

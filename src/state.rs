@@ -30,6 +30,12 @@ impl State {
         self.poses.push(Pose { position, rotation: rotation_matrix(&quaternion) });
     }
 
+    /// Appends all nodes of another state.
+    pub fn append(&mut self, mut other: Self) {
+        self.quaternions.append(&mut other.quaternions);
+        self.poses.append(&mut other.poses);
+    }
+
     /// Nodal poses.
     pub fn poses(&self) -> &[Pose] {
         &self.poses

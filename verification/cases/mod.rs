@@ -15,6 +15,12 @@ mod reactions;
 mod reference;
 mod roll_up;
 mod scenes;
+mod spring;
+mod spring_axis;
+mod spring_comparison;
+mod spring_fit;
+mod spring_wire_end;
+mod spring_work;
 mod straight_to_helix;
 
 use crate::case::Case;
@@ -37,6 +43,11 @@ pub fn all() -> Vec<Case> {
         reference::all(),
         roll_up::all(),
         scenes::all(),
+        spring_axis::all(),
+        spring_comparison::all(),
+        spring_fit::all(),
+        spring_wire_end::all(),
+        spring_work::all(),
         straight_to_helix::all(),
     ]
     .into_iter()

@@ -1,0 +1,146 @@
+//! The helical spring of Harsch & Eugster, section 4.1 (after Marino 2017), shared by the cases about it.
+//!
+//! E = 1e11, ν = 0.2, d = 1 mm, R = 10 mm, 10 coils, pitch 5 mm, clamped at ξ = 0, dead force along +e_z at ξ = 1:
+//! at the end of the wire, as the paper has it, or on the axis of the helix through a rigid lever.
+
+use std::error::Error;
+use std::f64::consts::{PI, TAU};
+
+use cosserat::scene::{
+    CurveShape, InterpolationKind, LoadKind, NodeSpacing, QuadratureKind, Reference, Rod, Scene, Statics,
+};
+use cosserat::solution::Solution;
+use nalgebra::Vector3;
+
+use crate::measure::{clamp, displacement, load, probe, solve};
+use crate::pieces::{circle, young_poisson};
+use crate::placement::{Placement, placements};
+
+pub const YOUNG: f64 = 1e11;
+pub const POISSON: f64 = 0.2;
+pub const DIAMETER: f64 = 1e-3;
+pub const RADIUS: f64 = 10e-3;
+pub const COILS: f64 = 10.0;
+pub const PITCH: f64 = 5e-3;
+
+/// G.
+pub const SHEAR: f64 = YOUNG / (2.0 * (1.0 + POISSON));
+/// A.
+pub const AREA: f64 = PI * DIAMETER * DIAMETER / 4.0;
+/// I, about either diameter; I_p = 2 I.
+pub const SECOND_MOMENT: f64 = AREA * DIAMETER * DIAMETER / 16.0;
+
+/// Forces [N] and displacements of the end of the wire [m] when they act there: the continuous rod equations
+/// solved without finite elements, twice and independently, to the digits given.
+pub const WIRE_END: [(f64, [f64; 3]); 7] = [
+    (1e-3, [1.47500180e-6, 3.52036747e-5, 2.94781347e-5]),
+    (1.0, [5.06220070e-4, 8.95343968e-3, 1.8501129270e-2]),
+    (5.0, [1.361342477e-3, 9.84087280e-3, 7.9471244668e-2]),
+    (10.0, [2.163680124e-3, 9.62765156e-3, 1.4991263582e-1]),
+    (20.0, [3.290070367e-3, 9.11295432e-3, 2.7177507415e-1]),
+    (50.0, [4.978132632e-3, 7.51906503e-3, 4.9898778726e-1]),
+    (100.0, [5.730260973e-3, 5.31327258e-3, 5.7259823107e-1]),
+];
+
+/// tan α = pitch/(2πR).
+pub fn slope(pitch: f64) -> f64 {
+    pitch / (TAU * RADIUS)
+}
+
+/// Length of the wire [m].
+pub fn wire_length(pitch: f64) -> f64 {
+    TAU * COILS * RADIUS * 1.0_f64.hypot(slope(pitch))
+}
+
+/// Where the three placements of a spring's scene put it.
+pub fn places() -> [Placement; 3] {
+    placements(COILS * PITCH)
+}
+
+/// One problem about the spring; change what differs.
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// Force along +e_z [N].
+    pub force: f64,
+    /// Whether it acts on the axis of the helix rather than at the end of the wire.
+    pub on_axis: bool,
+    pub pitch: f64,
+    pub elements: usize,
+    pub degree: usize,
+    pub spacing: NodeSpacing,
+    pub interpolation: InterpolationKind,
+    pub quadrature: QuadratureKind,
+    pub reference: Reference,
+    pub statics: Statics,
+}
+
+impl Spring {
+    /// Pulled at the end of the wire; R12, nodes on the curve, automatic increments.
+    pub fn new(force: f64, elements: usize, degree: usize) -> Self {
+        Self {
+            force,
+            on_axis: false,
+            pitch: PITCH,
+            elements,
+            degree,
+            spacing: NodeSpacing::default(),
+            interpolation: InterpolationKind::default(),
+            quadrature: QuadratureKind::default(),
+            reference: Reference::default(),
+            statics: Statics::default(),
+        }
+    }
+
+    /// Pulled on the axis.
+    pub fn axial(force: f64, elements: usize, degree: usize) -> Self {
+        Self { on_axis: true, ..Self::new(force, elements, degree) }
+    }
+
+    pub fn scene(&self) -> Scene {
+        let helix = CurveShape::Helix { coils: COILS, radius: RADIUS, pitch: self.pitch, phase: 0.0 };
+        let rod = Rod {
+            node_spacing: self.spacing,
+            interpolation: self.interpolation,
+            quadrature: self.quadrature,
+            reference: self.reference,
+            ..Rod::new(
+                "spring",
+                helix,
+                circle(DIAMETER),
+                Some(young_poisson(YOUNG, POISSON)),
+                self.elements,
+                self.degree,
+            )
+        };
+        // The normal e_y of a helix points to its axis.
+        let offset = self.on_axis.then_some([0.0, RADIUS, 0.0]);
+        let mut force = load(LoadKind::Force, "spring@1", [0.0, 0.0, self.force]);
+        force.offset = offset;
+        let mut loaded = probe("loaded point", "spring@1");
+        loaded.offset = offset;
+        Scene {
+            rod: vec![rod],
+            joint: vec![clamp("spring@0")],
+            load: vec![force],
+            probe: vec![loaded],
+            statics: Some(self.statics.clone()),
+            ..Scene::default()
+        }
+    }
+
+    pub fn solve(&self, placement: &Placement) -> Result<Solution, Box<dyn Error>> {
+        solve(&placement.apply(&self.scene()))
+    }
+
+    /// Displacement of the loaded point under the whole force [m].
+    pub fn displacement(&self, placement: &Placement) -> Result<Vector3<f64>, Box<dyn Error>> {
+        displacement(&self.solve(placement)?, 0, placement)
+    }
+
+    /// dF/du_z at F = 0 [N/m], by the difference of a small force and its opposite: the even terms drop out.
+    pub fn initial_stiffness(&self, placement: &Placement) -> Result<f64, Box<dyn Error>> {
+        let pulled = self.displacement(placement)?;
+        let pushed = Self { force: -self.force, ..self.clone() }.displacement(placement)?;
+        Ok(2.0 * self.force / (pulled.z - pushed.z))
+    }
+}

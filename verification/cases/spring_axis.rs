@@ -1,0 +1,108 @@
+//! The spring pulled on its axis, through a rigid lever from the end of the wire: the load case of the textbooks.
+
+use super::spring::{
+    AREA, COILS, DIAMETER, PITCH, RADIUS, SECOND_MOMENT, SHEAR, Spring, YOUNG, places, slope, wire_length,
+};
+use crate::case::{Case, Checks, Kind, Outcome};
+
+/// The cases of this file.
+pub fn all() -> Vec<Case> {
+    vec![
+        Case {
+            name: "spring_axis::values",
+            source: "continuous rod equations, solved without finite elements",
+            run: values,
+        },
+        Case {
+            name: "spring_axis::initial_stiffness",
+            source: "Castigliano; Berg & Marshall 1991",
+            run: initial_stiffness,
+        },
+    ]
+}
+
+/// Secant stiffnesses and the displacement at 100 N.
+fn values(checks: &mut Checks) -> Outcome {
+    let secants = [(1e-3, 64.88668548), (0.1, 64.92647410), (1.0, 65.21800942), (10.0, 68.93610068)];
+    for placement in places() {
+        for (force, exact) in secants {
+            let mut spring = Spring::axial(force, 48, 6);
+            if force < 0.01 {
+                // As at the end of the wire: the default test's rounding floor is no small part of this load.
+                spring.statics.tolerance = Some(1e-9);
+            }
+            let secant = force / spring.displacement(&placement)?.z;
+            checks.relative(
+                Kind::ClosedForm,
+                format!("secant stiffness at {force} N [N/m], {}", placement.name),
+                (secant, exact),
+                1e-8,
+                "mesh 1e-9 by its order, 12, from 30 elements; solver 1e-9 of the load, ten times by the compliance's range",
+            );
+        }
+        let displacement = |elements| Spring::axial(100.0, elements, 6).displacement(&placement);
+        let [coarse, fine] = [displacement(40)?.z, displacement(48)?.z];
+        checks.absolute(
+            Kind::ClosedForm,
+            format!("u_z at 100 N [m], {}", placement.name),
+            (fine, 0.57787824),
+            5e-9 + (fine - coarse).abs() / 6.4,
+            "half of the last printed digit; mesh: at order 11, (48/40)^11 − 1 = 6.4 times below the change from 40",
+        );
+    }
+    Ok(())
+}
+
+/// c of 1/c = L R² (cos²α/GI_p + sin²α/EI) + L (cos²α/GA + sin²α/EA). Exact for the tangent at no load: with the
+/// force on the axis the resultants are the same all along the wire.
+fn castigliano(pitch: f64) -> f64 {
+    let sine = slope(pitch) / 1.0_f64.hypot(slope(pitch));
+    let (sine, cosine) = (sine * sine, 1.0 - sine * sine);
+    let levers = cosine / (2.0 * SHEAR * SECOND_MOMENT) + sine / (YOUNG * SECOND_MOMENT);
+    let forces = cosine / (SHEAR * AREA) + sine / (YOUNG * AREA);
+    1.0 / (wire_length(pitch) * (RADIUS * RADIUS * levers + forces))
+}
+
+/// Castigliano's stiffness, and how the textbook's k = Gd⁴/64nR³ differs from it:
+///
+/// k/c = 1 + d²/8R² + tan²α (GI_p/EI − ½) + …. The first part is direct shear and stays for any pitch, the second
+/// falls with its square.
+fn initial_stiffness(checks: &mut Checks) -> Outcome {
+    let textbook = SHEAR * DIAMETER.powi(4) / (64.0 * COILS * RADIUS.powi(3));
+    let direct_shear = DIAMETER * DIAMETER / (8.0 * RADIUS * RADIUS);
+    for placement in places() {
+        let name = placement.name;
+        let mut rests = Vec::new();
+        for pitch in [PITCH, PITCH / 2.0, PITCH / 4.0] {
+            let mut spring = Spring { pitch, ..Spring::axial(1e-3, 48, 6) };
+            spring.statics.tolerance = Some(1e-9);
+            let stiffness = spring.initial_stiffness(&placement)?;
+            checks.relative(
+                Kind::ClosedForm,
+                format!("tangent stiffness at no load, pitch {pitch} m [N/m], {name}"),
+                (stiffness, castigliano(pitch)),
+                1e-7,
+                "cubic term of ±1e-3 N 1e-8 (a millionth of the 1e-2 between ±1 N), mesh 1e-8, rounding 5e-8",
+            );
+            rests.push(textbook / stiffness - 1.0 - direct_shear);
+        }
+        checks.order(
+            format!("textbook − Castigliano − direct shear over the pitch, {name}"),
+            &[1, 2, 4],
+            &rests,
+            (2.0, 0.01),
+            "next power is 4: tan²α = 1.6e-3 at the middle pitch, times 3/4 of a factor of order one, over ln 2",
+        );
+        checks.relative(
+            Kind::ClosedForm,
+            format!("its factor tan²α (GI_p/EI − 1/2), {name}"),
+            (
+                rests[2] / slope(PITCH / 4.0).powi(2),
+                2.0 * SHEAR / YOUNG - 0.5,
+            ),
+            2e-3,
+            "d²/8R² = 1.25e-3 of it by the shear's own share, tan²α = 4e-4, and 1e-7 of 1.3e-4 from the stiffness",
+        );
+    }
+    Ok(())
+}
