@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::error::{Error, SceneError};
 use crate::interpolation::Pose;
-use crate::rotation::rotation_matrix;
+use crate::rotation::{direction, rotation_matrix};
 use crate::scene::{Curve, CurveShape};
 
 /// A curve that can be evaluated.
@@ -159,13 +159,16 @@ impl Centreline {
 
 /// (tangent, normal projected, binormal); the default normal is e_z × tangent, or +e_y where that vanishes.
 fn line_frame(span: &Vector3<f64>, normal: Option<Vector3<f64>>) -> Matrix3<f64> {
-    let tangent = span.normalize();
-    let wanted = normal.unwrap_or_else(|| {
-        let default = Vector3::z().cross(&tangent);
-        if default.norm() > 1e-9 { default } else { Vector3::y() }
-    });
+    let tangent = direction(span);
+    let wanted = normal.map_or_else(
+        || {
+            let default = Vector3::z().cross(&tangent);
+            if default.norm() > 1e-9 { default } else { Vector3::y() }
+        },
+        |normal| direction(&normal),
+    );
     let projected = wanted - tangent * tangent.dot(&wanted);
-    let normal = projected.normalize();
+    let normal = direction(&projected);
     Matrix3::from_columns(&[tangent, normal, tangent.cross(&normal)])
 }
 
@@ -215,7 +218,7 @@ fn read_poses(file: &Path, key: &str) -> Result<Vec<Pose>, Error> {
     }
     if poses.len() < 2 {
         return Err(wrong(format!(
-            "{} holds {} poses; a rod needs two at least",
+            "{} has {} of the poses; a rod needs two at least",
             file.display(),
             poses.len()
         ))

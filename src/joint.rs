@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use crate::element::ElementTangent;
 use crate::interpolation::{Increment, Pose};
-use crate::rotation::skew;
+use crate::rotation::{direction, skew};
 use crate::scene::JointKind;
 
 /// A node held by the ground.
@@ -36,7 +36,7 @@ impl Support {
             JointKind::Rigid => (Matrix3::zeros(), 0),
             JointKind::Spherical => (Matrix3::identity(), 3),
             JointKind::Revolute => {
-                let axis = pose.rotation.tr_mul(&axis).normalize();
+                let axis = pose.rotation.tr_mul(&direction(&axis));
                 (axis * axis.transpose(), 1)
             }
         };

@@ -28,6 +28,14 @@ impl Course {
         }
     }
 
+    /// The first time after `t` at which the course bends.
+    pub fn next_bend(&self, t: f64) -> Option<f64> {
+        match self {
+            Self::Ramp | Self::Constant => None,
+            Self::Table(table) => table.iter().map(|row| row[0]).find(|&time| time > t),
+        }
+    }
+
     /// The factor at `t`.
     pub fn factor(&self, t: f64) -> f64 {
         match self {

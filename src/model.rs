@@ -14,10 +14,10 @@ use crate::interpolation::{HalfTurn, Pose};
 use crate::joint::Support;
 use crate::load::{Course, PointLoad};
 use crate::rod::{NODE_TOLERANCE, RodElements, RodProperties};
-use crate::scene::{EulerSequence, JointKind, LoadKind, Scene, parse_point};
+use crate::scene::{EulerSequence, LoadKind, Scene, parse_point};
 use crate::state::State;
 
-/// A rod ready to be solved. Positions are relative to the model's origin.
+/// A rod ready to be solved.
 #[derive(Debug)]
 pub struct RodModel {
     /// Its name.
@@ -30,6 +30,9 @@ pub struct RodModel {
     pub nodes: usize,
     /// Reference length of the discrete rod [m].
     pub length: f64,
+    /// The start of its curve: positions are kept relative to it, so that a rod far from the inertial origin loses
+    /// no digits [m].
+    pub(crate) origin: Vector3<f64>,
     pub(crate) kernel: Box<dyn RodElements>,
     pub(crate) properties: RodProperties,
     /// Its nodes among those of the model.
@@ -73,9 +76,6 @@ pub struct Model {
     pub(crate) joints: Vec<GroundJoint>,
     pub(crate) probes: Vec<ProbeModel>,
     pub(crate) reference: State,
-    /// The start of the first rod; positions are kept relative to it, so that a scene far from the inertial
-    /// origin loses no digits.
-    pub(crate) origin: Vector3<f64>,
     warnings: Vec<String>,
 }
 
@@ -89,18 +89,15 @@ impl Model {
             .enumerate()
             .map(|(i, rod)| PlacedCurve::new(&rod.curve, &format!("rod.{i}.curve")))
             .collect::<Result<Vec<_>, _>>()?;
-        let origin = curves.first().map_or_else(Vector3::zeros, |curve| curve.pose(0.0).position);
         let mut model = Self {
             rods: Vec::new(),
             joints: Vec::new(),
             probes: Vec::new(),
             reference: State::default(),
-            origin,
             warnings: Vec::new(),
         };
         for (index, curve) in curves.into_iter().enumerate() {
-            let (rod, nodes) =
-                rod::build(scene, index, &curve.relative_to(&origin), model.reference.poses().len())?;
+            let (rod, nodes) = rod::build(scene, index, curve, model.reference.poses().len())?;
             model.rods.push(rod);
             model.reference.append(nodes);
         }
@@ -130,18 +127,27 @@ impl Model {
         self.rods.iter().map(|rod| 6 * rod.nodes - held(rod)).sum()
     }
 
-    /// The undeformed state; positions are relative to the start of the first rod.
+    /// The first load factor after `t` at which a load's course bends.
+    pub(crate) fn next_bend(&self, t: f64) -> Option<f64> {
+        let bends = self.courses().filter_map(|course| course.next_bend(t));
+        bends.min_by(f64::total_cmp)
+    }
+
+    fn courses(&self) -> impl Iterator<Item = &Course> {
+        self.rods.iter().flat_map(|rod| {
+            let line_loads = rod.line_loads.iter().map(|(_, course)| course);
+            rod.point_loads.iter().map(|load| &load.course).chain(line_loads)
+        })
+    }
+
+    /// The undeformed state; positions are relative to the start of each rod.
     pub fn reference_state(&self) -> &State {
         &self.reference
     }
 
     /// Whether any load acts at load factor 0 already.
     pub(crate) fn loaded_at_start(&self) -> bool {
-        let acts = |course: &Course| course.factor(0.0) != 0.0;
-        self.rods.iter().any(|rod| {
-            rod.point_loads.iter().any(|load| acts(&load.course))
-                || rod.line_loads.iter().any(|(_, c)| acts(c))
-        })
+        self.courses().any(|course| course.factor(0.0) != 0.0)
     }
 
     /// What the user should know about the model.
@@ -153,13 +159,22 @@ impl Model {
     pub fn pose(&self, state: &State, rod: usize, xi: f64, offset: &Vector3<f64>) -> Result<Pose, HalfTurn> {
         let rod = &self.rods[rod];
         let pose = rod.kernel.pose(&state.poses()[rod.range.clone()], xi)?;
-        Ok(Pose { position: self.origin + pose.position + pose.rotation * offset, rotation: pose.rotation })
+        Ok(Pose { position: rod.origin + pose.position + pose.rotation * offset, rotation: pose.rotation })
     }
 
     /// A sentence for every rod whose mesh does not resolve a state.
     pub(crate) fn unresolved(&self, state: &State, what: &str) -> Vec<String> {
         let sentence = |rod: &RodModel| {
-            let (element, determinant) = rod.kernel.smallest_determinant(&state.poses()[rod.range.clone()]);
+            let poses = &state.poses()[rod.range.clone()];
+            let (element, stretch) = rod.kernel.smallest_stretch(poses, &rod.properties);
+            if stretch <= 0.0 {
+                return Some(format!(
+                    "rod `{}` is pushed through itself in its {what}: in element {element} its stretch is \
+                     {stretch:.3}; no material does that",
+                    rod.name
+                ));
+            }
+            let (element, determinant) = rod.kernel.smallest_determinant(poses);
             (determinant < RESOLVED_DETERMINANT).then(|| {
                 format!(
                     "the mesh of rod `{}` is too coarse for its {what}: in element {element} the interpolated \
@@ -191,14 +206,13 @@ impl Model {
                 return Err(SceneError::new(
                     format!("joint.{index}.between.{end}"),
                     format!("holds `{}`, which another joint holds already", joint.between[end]),
-                    "one joint a node",
+                    "one joint a node; more are not available yet",
                 ));
             }
             let pose = &self.reference.poses()[model.range.start + node];
-            let point = joint.point.map_or(pose.position, |point| Vector3::from(point) - self.origin);
+            let point = joint.point.map_or(pose.position, |point| Vector3::from(point) - model.origin);
             let axis = Vector3::from(joint.axis.unwrap_or([1.0, 0.0, 0.0]));
-            let kind: JointKind = joint.kind;
-            model.supports.push(Support::new(node, kind, pose, point, axis));
+            model.supports.push(Support::new(node, joint.kind, pose, point, axis));
             places.push((rod, node, if end == 1 { 1.0 } else { -1.0 }));
         }
         for rod in &mut self.rods {

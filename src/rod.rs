@@ -180,6 +180,9 @@ pub trait RodElements: Debug + Send + Sync {
     /// where the interpolated matrix has shrunk because the nodes are turned far against each other.
     fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64);
 
+    /// The element with the smallest stretch γ₁ at a quadrature point, and that stretch: 1 for an unstrained rod.
+    fn smallest_stretch(&self, poses: &[Pose], properties: &RodProperties) -> (usize, f64);
+
     /// ξ of every node.
     fn node_positions(&self) -> Vec<f64>;
 
@@ -446,6 +449,20 @@ where
                     I::strain(self.of(e, poses), basis).map_or(0.0, |s| s.rotation.determinant());
                 if determinant < smallest.1 {
                     smallest = (e, determinant);
+                }
+            }
+        }
+        smallest
+    }
+
+    fn smallest_stretch(&self, poses: &[Pose], properties: &RodProperties) -> (usize, f64) {
+        let mut smallest = (0, f64::INFINITY);
+        for (e, points) in properties.points.chunks_exact(self.rule.len()).enumerate() {
+            for (basis, reference) in self.rule.iter().zip(points) {
+                let stretch =
+                    I::strain(self.of(e, poses), basis).map_or(1.0, |s| s.gamma.x / reference.jacobian);
+                if stretch < smallest.1 {
+                    smallest = (e, stretch);
                 }
             }
         }

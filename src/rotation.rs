@@ -14,6 +14,11 @@ pub fn skew(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
+/// v/‖v‖ for any finite v ≠ 0: divided by its largest component first, no square over- or underflows.
+pub fn direction(v: &Vector3<f64>) -> Vector3<f64> {
+    (v / v.amax()).normalize()
+}
+
 /// j⁻¹(Skw(M)) = ½ (M₃₂ − M₂₃, M₁₃ − M₃₁, M₂₁ − M₁₂).
 #[inline]
 pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {

@@ -467,7 +467,7 @@ pub struct Statics {
     pub tolerance: Option<f64>,
     /// The iteration.
     pub newton: NewtonKind,
-    /// Largest number of iterations in one increment.
+    /// Largest number of iterations in one increment; an automatic one is retried, smaller, after twelve.
     pub max_iterations: usize,
     /// The unknowns of the linear systems.
     pub coordinates: Coordinates,

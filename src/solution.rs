@@ -89,13 +89,28 @@ pub enum SolveError {
         /// The largest load factor that converged.
         reached: f64,
     },
+    /// The loads that act at load factor 0 already could not be brought up.
+    #[error(
+        "no equilibrium found under the loads that act at load factor 0: after {iterations} iterations the residual is \
+         {residual:.3e}, the tolerance {tolerance:.3e} ({reason})"
+    )]
+    Start {
+        /// Iterations spent on the last attempt.
+        iterations: usize,
+        /// The last finite residual, in the units of the active test.
+        residual: f64,
+        /// What it was held against.
+        tolerance: f64,
+        /// What ended the iteration.
+        reason: StopReason,
+    },
 }
 
 /// What ended an iteration that did not converge.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum StopReason {
     /// Too many iterations.
-    #[error("the largest number of iterations is spent")]
+    #[error("no more iterations are allowed")]
     Iterations,
     /// Too many automatic increments.
     #[error("automatic increments have become too small to arrive")]

@@ -92,14 +92,18 @@ impl<'a> Path<'a> {
     fn follow(&mut self, increments: Option<usize>) -> Result<(), SolveError> {
         let brought_up = if self.model.loaded_at_start() {
             self.last.place = -1.0;
+            let reference = self.last.clone();
             let outcome = self.automatic(0.0);
             self.before = None;
             self.statistics.increments = 0;
+            if outcome.is_err() {
+                self.last = reference;
+            }
             outcome
         } else {
             Ok(())
         };
-        // The first row is the start, also where the loads that act at once could not be brought up in full.
+        // The first row is the start: the undeformed rods where the loads that act at once could not be brought up.
         let start = level(self.last.place);
         self.work
             .evaluate(self.model, &self.last.state, &start)
@@ -108,7 +112,7 @@ impl<'a> Path<'a> {
         brought_up?;
         match increments {
             Some(count) => self.equal(count),
-            None => self.automatic(1.0),
+            None => self.stages(),
         }
     }
 
@@ -117,6 +121,15 @@ impl<'a> Path<'a> {
         for k in 1..=count {
             let place = k as f64 / count as f64;
             self.attempt(place, self.newton.max_iterations).map_err(|stop| self.error(place, &stop))?;
+        }
+        Ok(())
+    }
+
+    /// Automatic increments from bend to bend of the loads' courses, so that no peak is stepped over.
+    fn stages(&mut self) -> Result<(), SolveError> {
+        while self.last.place < 1.0 {
+            let bend = self.model.next_bend(self.last.place);
+            self.automatic(bend.map_or(1.0, |bend| bend.min(1.0)))?;
         }
         Ok(())
     }
@@ -234,15 +247,21 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Places up to 0 belong to the loads that act at load factor 0.
     fn error(&self, place: f64, stop: &NotConverged) -> SolveError {
+        let NotConverged { iterations, residual, reason } = *stop;
+        let tolerance = self.newton.test.tolerance();
+        if place <= 0.0 {
+            return SolveError::Start { iterations, residual, tolerance, reason };
+        }
         SolveError::NotConverged {
-            load_factor: place.max(0.0),
-            iterations: stop.iterations,
-            residual: stop.residual,
-            tolerance: self.newton.test.tolerance(),
-            reason: stop.reason,
+            load_factor: place,
+            iterations,
+            residual,
+            tolerance,
+            reason,
             increments: self.statistics.increments,
-            reached: self.last.place.max(0.0),
+            reached: self.last.place,
         }
     }
 }

@@ -19,11 +19,11 @@ use crate::state::State;
 /// be another one, and just below it nothing lies between them.
 const MOST_TURN: f64 = 0.999 * PI;
 
-/// Rod `index` with its nodes, which come after `first` others in the model; the curve is relative to its origin.
+/// Rod `index` with its nodes, which come after `first` others in the model.
 pub fn build(
     scene: &Scene,
     index: usize,
-    curve: &PlacedCurve,
+    curve: PlacedCurve,
     first: usize,
 ) -> Result<(RodModel, State), SceneError> {
     let rod = &scene.rod[index];
@@ -31,7 +31,9 @@ pub fn build(
     let kernel = rod_elements(rod.elements, rod.degree, rod.node_spacing, rod.interpolation, rod.quadrature)
         .ok_or_else(|| SceneError::new(key("interpolation"), "has no such degree", "degree 1 for se3"))?;
     let stiffness = stiffness(rod, &key)?;
-    let nodes = reference_nodes(rod, &*kernel, curve, &key)?;
+    let origin = curve.pose(0.0).position;
+    let curve = curve.relative_to(&origin);
+    let nodes = reference_nodes(rod, &*kernel, &curve, &key)?;
     let line_loads = line_loads(scene, rod);
     let properties = kernel.properties(nodes.poses(), stiffness, !line_loads.is_empty()).map_err(|e| {
         too_few(rod, &key, format!("is too coarse: element {e} is degenerate"), 2 * rod.elements)
@@ -48,6 +50,7 @@ pub fn build(
         degree: rod.degree,
         nodes: nodes.poses().len(),
         length,
+        origin,
         range: first..first + nodes.poses().len(),
         kernel,
         properties,
@@ -91,9 +94,13 @@ fn reference_nodes(
     let widest = positions.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let turn = widest * curve.total_turn();
     if turn > MOST_TURN {
-        let enough = (rod.elements as f64 * turn / (0.5 * PI)).ceil() as usize;
-        let problem = format!("lets neighbouring nodes be {turn:.3} rad apart, half a turn or more");
-        return Err(too_few(rod, key, problem, enough));
+        let enough = |angle: f64| (rod.elements as f64 * turn / angle).ceil();
+        let (least, better) = (enough(MOST_TURN), enough(0.5 * PI));
+        return Err(SceneError::new(
+            key("elements"),
+            format!("lets neighbouring nodes be {turn:.4?} rad apart, half a turn or more"),
+            format!("at least {least:?}, better {better:?} elements of degree {}", rod.degree),
+        ));
     }
     let mut nodes = State::from_poses(positions.iter().map(|&xi| curve.pose(xi)));
     let samples = match (curve.given_poses(), rod.reference) {
@@ -101,14 +108,14 @@ fn reference_nodes(
         (None, Reference::Fit { samples }) => samples,
         (None, Reference::Nodes) => return Ok(nodes),
     };
-    let key = key("reference");
+    let key = key(if curve.given_poses().is_some() { "curve.file" } else { "reference" });
     let count = positions.len();
     if samples < count {
         let (residuals, unknowns) = (6 * samples, 6 * count);
         return Err(SceneError::new(
             key,
             format!("fits {count} nodes to {samples} samples, {residuals} residuals for {unknowns} unknowns"),
-            format!("at least {count} samples"),
+            format!("at least {count} samples, or fewer elements"),
         ));
     }
     let targets: Vec<Pose> = (0..samples).map(|j| curve.pose(j as f64 / (samples - 1) as f64)).collect();

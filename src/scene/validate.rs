@@ -10,6 +10,7 @@ use toml::Value;
 
 use super::read::refuse_non_finite;
 use super::{Joint, JointKind, Load, LoadKind, LoadTime, Scene};
+use crate::rod::NODE_TOLERANCE;
 use check::{Check, at_least_one, fail, finite_number, known, non_zero, positive, quoted};
 
 impl Scene {
@@ -26,7 +27,7 @@ impl Scene {
         for (index, rod) in self.rod.iter().enumerate() {
             let key = format!("rod.{index}");
             rod::rod(rod, &key)?;
-            if self.gravity.is_some() && rod.gravity {
+            if self.gravity.is_some_and(|gravity| gravity != [0.0; 3]) && rod.gravity {
                 section::weight(rod, &key)?;
             }
         }
@@ -56,7 +57,10 @@ impl Scene {
         match grounded {
             0 => {
                 for (end, part) in joint.between.iter().enumerate() {
-                    self.validate_point(part, &format!("{between}.{end}"))?;
+                    self.validate_point(part, &format!("{between}.{end}")).map_err(|mut error| {
+                        error.expected.push_str(", or \"ground\"");
+                        error
+                    })?;
                 }
                 return fail(
                     between,
@@ -129,7 +133,8 @@ impl Scene {
             );
         };
         known(key, name, &self.rod_names(), &on[name.len()..])?;
-        if !(0.0..=1.0).contains(&xi) {
+        // As near to an end as a node may be to its ξ.
+        if !(-NODE_TOLERANCE..=1.0 + NODE_TOLERANCE).contains(&xi) {
             return fail(key, format!("is {on:?}, beyond the ends of the rod"), "ξ from 0 to 1");
         }
         Ok(())
@@ -309,7 +314,7 @@ between = ["ground", "beam@0"]
         let error = wrong.validate().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "`rod.0.elements`: is 0; expected at least 1 and at most 100000000 elements"
+            "`rod.0.elements`: is 0; expected at least 1 and at most 10000000 elements"
         );
     }
 }

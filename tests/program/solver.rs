@@ -154,3 +154,141 @@ fn given_poses_are_read_and_fitted() {
     let first = &rows(&results, "probes.csv")[0];
     assert!((first[3] - 0.08).abs() < 1e-12, "{first:?}");
 }
+
+/// A clamped straight rod with a transverse tip force; change what differs.
+const BEAM: &str = r#"
+[[rod]]
+name = "r"
+curve = { kind = "line", length = 1.0 }
+section = { kind = "circle", diameter = 10e-3 }
+material = { young_modulus = 1e11, poisson_ratio = 0.2 }
+elements = 10
+degree = 2
+[[joint]]
+kind = "rigid"
+between = ["ground", "r@0"]
+[[load]]
+kind = "force"
+on = "r@1"
+value = [0, 0, 1]
+[[probe]]
+name = "tip"
+on = "r@1"
+[statics]
+"#;
+
+/// Runs the beam, or another scene given as text.
+fn run_text(scene: &str, overrides: &[&str]) -> (Option<i32>, String, TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene).unwrap();
+    run(text(&path), overrides)
+}
+
+/// The last row of a table of a solved scene.
+fn solved(scene: &str, overrides: &[&str], table: &str) -> Vec<f64> {
+    let (code, stderr, folder) = run_text(scene, overrides);
+    assert_eq!(code, Some(0), "{overrides:?}: {stderr}");
+    rows(&folder, table).pop().unwrap()
+}
+
+/// A load may be so small, or a mesh so fine, that it drowns in the rounding of the stiffness: it is carried all the same.
+#[test]
+fn small_loads_are_carried_in_full() {
+    for (overrides, load, deflection) in [
+        (&["rod.0.curve.length=1000", "rod.0.elements=1000", "load.0.value=[0,0,3e-5]"][..], 3e-5, 195.65),
+        (&["rod.0.section.diameter=1e-4", "rod.0.elements=1000", "load.0.value=[0,0,3e-9]"], 3e-9, 2.037e-3),
+        (&["rod.0.section.diameter=1e-6", "rod.0.elements=40", "load.0.value=[0,0,3e-14]"], 3e-14, 0.74744),
+        (&["load.0.value=[0,0,1e-7]"], 1e-7, 6.7909e-10),
+    ] {
+        let tip = solved(BEAM, overrides, "probes.csv")[3];
+        assert!((tip / deflection - 1.0).abs() < 2e-4, "{overrides:?}: {tip}");
+        let reaction = solved(BEAM, overrides, "reactions.csv")[3];
+        assert!((reaction / load + 1.0).abs() < 1e-3, "{overrides:?}: {reaction}");
+    }
+}
+
+#[test]
+fn directions_may_have_any_length() {
+    let held = [
+        r#"joint=[{ kind = "revolute", between = ["ground", "r@0"], axis = AXIS },
+                  { kind = "spherical", between = ["ground", "r@1"] }]"#,
+        "load.0.on=\"r@0.5\"",
+        "probe.0.on=\"r@0.5\"",
+    ];
+    let with = |axis: &str| {
+        let joints = held[0].replace("AXIS", axis).replace('\n', " ");
+        solved(BEAM, &[joints.as_str(), held[1], held[2]], "probes.csv")
+    };
+    let expected = with("[0, 1, 0]");
+    for axis in ["[0, 1e200, 0]", "[0, 1e-200, 0]", "[0, -3, 0]"] {
+        assert_eq!(with(axis), expected, "{axis}");
+    }
+    let section = "rod.0.section={ kind = \"rectangle\", width = 0.01, height = 0.02 }";
+    let tip = |normal: &str| {
+        let curve =
+            format!("rod.0.curve={{ kind = \"line\", from = [0,0,0], to = [1,0,0], normal = {normal} }}");
+        solved(BEAM, &[section, &curve], "probes.csv")[3]
+    };
+    assert_eq!(tip("[0, 0, 1e200]"), tip("[0, 0, 1]"));
+    assert!(tip("[0, 0, 1]") > 3.9 * tip("[0, 1, 0]"), "four times as stiff about the other axis");
+}
+
+/// Rods know nothing of one another nor of the inertial origin: far away each is as exact as at home.
+#[test]
+fn rods_far_away_lose_no_digits() {
+    let home = solved(BEAM, &[], "reactions.csv");
+    let body = BEAM.split("[statics]").next().unwrap();
+    let second = body.replace("\"r\"", "\"s\"").replace("r@", "s@").replace("\"tip\"", "\"far tip\"");
+    for origin in ["1e6", "1e8"] {
+        let moved = second.replace("length = 1.0", &format!("length = 1.0, origin = [{origin}, 0, 0]"));
+        let both = solved(&format!("{body}{moved}[statics]\n"), &[], "reactions.csv");
+        assert_eq!(both[1..7], home[1..7]);
+        assert_eq!(both[7..13], home[1..7], "{origin}");
+    }
+    // A support far from its rod still holds it, and one that is hardly a number is no endless search.
+    let joint = |point: &str| format!("joint.0.point=[{point}, 0, 0]");
+    assert_eq!(run_text(BEAM, &[&joint("1e10")]).0, Some(0));
+    assert!(run_text(BEAM, &[&joint("1e308")]).0.is_some());
+}
+
+#[test]
+fn load_tables_are_followed_from_bend_to_bend() {
+    let time = "load.0.time=[[0, 0], [0.3, 100], [0.6, -100], [1, 0]]";
+    let (code, stderr, folder) = run_text(BEAM, &[time]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let rows = rows(&folder, "probes.csv");
+    for (bend, sign) in [(0.3, 1.0), (0.6, -1.0)] {
+        let row = rows.iter().find(|row| row[0] == bend).expect("a row at every bend");
+        assert!(sign * row[3] > 0.4, "{row:?}");
+    }
+    assert!(rows.last().unwrap()[3].abs() < 1e-9);
+}
+
+#[test]
+fn loads_that_act_at_once_are_brought_up_before_the_first_row() {
+    let constant = "load.0.time=\"constant\"";
+    let (code, stderr, folder) = run_text(BEAM, &[constant, "load.0.value=[0,0,100]"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let table = rows(&folder, "probes.csv");
+    assert!(table[0][0] == 0.0 && (table[0][3] - table.last().unwrap()[3]).abs() < 1e-9 && table[0][3] > 0.3);
+    let (code, stderr, folder) = run_text(BEAM, &[constant, "load.0.value=[0,0,1e12]"]);
+    assert_eq!(code, Some(3), "{stderr}");
+    assert!(stderr.contains("act at load factor 0"), "{stderr}");
+    assert_eq!(rows(&folder, "probes.csv").len(), 1);
+    no_nan(&folder);
+}
+
+#[test]
+fn a_rod_pushed_through_itself_is_named() {
+    let (code, _, folder) = run_text(BEAM, &["load.0.value=[-1e7,0,0]"]);
+    assert_eq!(code, Some(0));
+    assert!(read(&folder, "summary.json").contains("pushed through itself"));
+}
+
+#[test]
+fn ends_are_nodes_within_the_tolerance_of_nodes() {
+    let exact = solved(BEAM, &[], "probes.csv");
+    assert_eq!(solved(BEAM, &["load.0.on=\"r@1.0000000005\""], "probes.csv"), exact);
+    assert_eq!(run_text(BEAM, &["load.0.on=\"r@1.000001\""]).0, Some(2));
+}

@@ -4,6 +4,9 @@ use toml::Value;
 
 use crate::error::SceneError;
 
+/// No entry of a scene lies deeper than this, by far.
+const DEEPEST: usize = 64;
+
 /// One override, parsed.
 #[derive(Clone, Debug)]
 pub(super) struct Override {
@@ -28,6 +31,10 @@ impl Override {
         if key.split('.').any(|segment| segment.trim().is_empty()) {
             let expected = "a dotted path with arrays by index, such as rod.0.elements";
             return Err(refuse(key, "is not a key", expected.into()));
+        }
+        if key.split('.').count() > DEEPEST {
+            let expected = format!("a path of at most {DEEPEST} parts");
+            return Err(refuse("…", "is nested too deeply", expected));
         }
         match value.parse::<Value>() {
             Ok(value) => Ok(Self {

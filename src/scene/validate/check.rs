@@ -7,7 +7,7 @@ use crate::scene::read::{hint, one_of};
 pub(super) type Check = Result<(), SceneError>;
 
 /// More of anything than this is a slip of the keyboard and would only exhaust the memory.
-pub(super) const MOST: usize = 100_000_000;
+pub(super) const MOST: usize = 10_000_000;
 
 pub(super) fn fail(key: impl Into<String>, problem: impl Into<String>, expected: impl Into<String>) -> Check {
     Err(SceneError::new(key, problem, expected))
