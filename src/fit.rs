@@ -142,7 +142,7 @@ where
     let samples = Samples { elements, targets };
     let count = elements.count();
     let size = targets.iter().map(|pose| (pose.position - targets[0].position).norm()).fold(0.0, f64::max);
-    let mut chain = Chain::new(count, N - 1);
+    let mut chain = Chain::new(count, N - 1, &[]);
     let mut matrices = vec![zero_tangent::<N>(); count];
     let mut gradient = vec![0.0; NODE * state.poses().len()];
     let mut cost = samples.cost(state)?;
@@ -186,14 +186,14 @@ fn damped_solve<const N: usize>(
     damping: f64,
     increment: &mut [f64],
 ) -> Option<()> {
-    for (e, matrix) in matrices.iter().enumerate() {
-        let mut damped = *matrix;
+    for step in 0..matrices.len() {
+        let mut damped = matrices[chain.element(step)];
         for (i, row) in damped.iter_mut().enumerate() {
             for k in 0..NODE {
                 row[i][(k, k)] *= 1.0 + damping;
             }
         }
-        chain.add_element(e, &damped).ok()?;
+        chain.add_element(step, &damped).ok()?;
     }
     chain.factorize().ok()?;
     chain.solve(increment);

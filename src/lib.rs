@@ -81,10 +81,14 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod assembly;
+pub mod body;
+pub mod constraint;
 pub mod curve;
+pub mod dynamics;
 pub mod element;
 pub mod error;
 pub mod fit;
+pub mod inertia;
 pub mod interpolation;
 pub mod joint;
 pub mod lagrange;

@@ -1,10 +1,10 @@
-//! Point loads at a node, and how loads vary.
+//! Point loads at a node or a body, and how loads vary.
 
 use nalgebra::{Matrix6, Vector3};
 
 use crate::interpolation::Pose;
 use crate::rotation::skew;
-use crate::scene::{Basis, LoadKind, LoadTime, NamedTime};
+use crate::scene::{Analysis, Basis, Load, LoadKind, LoadTime, NamedTime, Scene};
 
 /// The factor of a load over the load factor (or time).
 #[derive(Clone, Debug, PartialEq)]
@@ -18,13 +18,24 @@ pub enum Course {
 }
 
 impl Course {
-    /// From the scene; absent means `default`.
-    pub fn new(time: Option<&LoadTime>, default: Course) -> Self {
+    /// From the scene. In dynamics a ramp grows from 0 at the start to 1 at the end time.
+    pub fn new(time: Option<&LoadTime>, scene: &Scene) -> Self {
         match time {
-            None => default,
-            Some(LoadTime::Named(NamedTime::Ramp)) => Self::Ramp,
+            None => Self::default_for(scene),
+            Some(LoadTime::Named(NamedTime::Ramp)) => match scene.analysis() {
+                Some(Analysis::Dynamics(options)) => Self::Table(vec![[0.0, 0.0], [options.end_time, 1.0]]),
+                _ => Self::Ramp,
+            },
             Some(LoadTime::Named(NamedTime::Constant)) => Self::Constant,
             Some(LoadTime::Table(table)) => Self::Table(table.clone()),
+        }
+    }
+
+    /// What gravity and a load without course do: constant in dynamics, a ramp otherwise.
+    pub fn default_for(scene: &Scene) -> Self {
+        match scene.analysis() {
+            Some(Analysis::Dynamics(_)) => Self::Constant,
+            _ => Self::Ramp,
         }
     }
 
@@ -56,7 +67,7 @@ impl Course {
 /// A force or moment at a node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointLoad {
-    /// Index of the node within its rod.
+    /// Index of the node within its rod, or in the model for a body.
     pub node: usize,
     /// True for a moment, false for a force.
     pub is_moment: bool,
@@ -72,7 +83,7 @@ pub struct PointLoad {
 
 impl PointLoad {
     /// A load of the scene at a node; `None` for line loads.
-    pub fn new(node: usize, load: &crate::scene::Load) -> Option<Self> {
+    pub fn new(node: usize, load: &Load, scene: &Scene) -> Option<Self> {
         let is_moment = match load.kind {
             LoadKind::Force => false,
             LoadKind::Moment => true,
@@ -84,8 +95,20 @@ impl PointLoad {
             value: Vector3::from(load.value),
             basis: load.basis,
             lever: Vector3::from(load.offset.unwrap_or_default()),
-            course: Course::new(load.time.as_ref(), Course::Ramp),
+            course: Course::new(load.time.as_ref(), scene),
         })
+    }
+
+    /// The weight of a body at its node.
+    pub fn weight(node: usize, weight: Vector3<f64>, course: Course) -> Self {
+        Self {
+            node,
+            is_moment: false,
+            value: weight,
+            basis: Basis::Inertial,
+            lever: Vector3::zeros(),
+            course,
+        }
     }
 
     /// (force inertial, moment body) on the node: a force F at the lever s adds s × Aᵀ F.

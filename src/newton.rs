@@ -1,4 +1,4 @@
-//! Newton's iteration for the equilibrium (16) at one load level, mixed or plain.
+//! Newton's iteration, mixed or plain, and the equilibrium (16) at one load level as its first user.
 //!
 //! The mixed iteration (Magisano, Leonetti & Garcea 2017) keeps a stress resultant s per quadrature point as an
 //! iterate of its own: the geometric tangent is built from s, the residual from the constitutive ŝ(q), and after a
@@ -69,22 +69,28 @@ pub struct NotConverged {
     pub reason: StopReason,
 }
 
+/// What Newton's iteration solves.
+pub trait Equations {
+    /// Evaluates the residual where the iterate is.
+    fn evaluate(&mut self) -> Result<Residual, StopReason>;
+
+    /// Solves with the tangent there and moves the iterate.
+    fn step(&mut self, kind: NewtonKind) -> Result<(), StopReason>;
+}
+
 impl Newton {
-    /// Moves `state` (and the stresses in the workspace) to equilibrium.
+    /// Moves the iterate to a solution.
     pub fn solve(
         &self,
-        model: &Model,
-        level: &LoadLevel,
-        state: &mut State,
-        work: &mut Workspace,
+        equations: &mut dyn Equations,
         statistics: &mut Statistics,
     ) -> Result<Converged, NotConverged> {
         let mut residual = f64::INFINITY;
         let mut iterations = 0;
         let stop = |reason, iterations, residual| NotConverged { iterations, residual, reason };
         loop {
-            work.evaluate(model, state, level).map_err(|reason| stop(reason, iterations, residual))?;
-            let now = self.test.measure(&work.residual(model, state));
+            let now = equations.evaluate().map_err(|reason| stop(reason, iterations, residual))?;
+            let now = self.test.measure(&now);
             if !now.is_finite() {
                 return Err(stop(StopReason::Singular, iterations, residual));
             }
@@ -97,20 +103,43 @@ impl Newton {
             if iterations == self.max_iterations {
                 return Err(stop(StopReason::Iterations, iterations, residual));
             }
-            if self.kind == NewtonKind::Displacement {
-                work.reset_stresses();
-            }
             iterations += 1;
             statistics.newton_iterations += 1;
             statistics.factorizations += 1;
-            work.factorize(model, state, level)
-                .and_then(|()| work.solve(model, state))
-                .and_then(|()| match self.kind {
-                    NewtonKind::Mixed => work.advance_stresses(model, state),
-                    NewtonKind::Displacement => Ok(()),
-                })
-                .map_err(|reason| stop(reason, iterations, residual))?;
-            work.update(model, state);
+            equations.step(self.kind).map_err(|reason| stop(reason, iterations, residual))?;
         }
+    }
+}
+
+/// The equilibrium (16) at one load level.
+pub struct Equilibrium<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// How much of the loads acts.
+    pub level: LoadLevel,
+    /// The iterate, with the stresses in the workspace.
+    pub state: &'a mut State,
+    /// Memory.
+    pub work: &'a mut Workspace,
+}
+
+impl Equations for Equilibrium<'_> {
+    fn evaluate(&mut self) -> Result<Residual, StopReason> {
+        self.work.evaluate(self.model, self.state, &self.level, None)?;
+        // Joints close to τ of the model's size, and of a radian.
+        Ok(self.work.residual(self.model, self.state, (self.model.size, 1.0)))
+    }
+
+    fn step(&mut self, kind: NewtonKind) -> Result<(), StopReason> {
+        if kind == NewtonKind::Displacement {
+            self.work.reset_stresses();
+        }
+        self.work.factorize(self.model, self.state, &self.level, None)?;
+        self.work.solve(self.model, self.state, 1.0)?;
+        if kind == NewtonKind::Mixed {
+            self.work.advance_stresses(self.model, self.state)?;
+        }
+        self.work.update(self.model, self.state);
+        Ok(())
     }
 }

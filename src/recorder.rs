@@ -3,9 +3,10 @@
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 use crate::assembly::Workspace;
-use crate::model::{Model, ProbeModel};
+use crate::interpolation::Pose;
+use crate::model::{JointModel, Model, ProbeModel, ProbedPart};
 use crate::rotation::quaternion_of;
-use crate::solution::{ProbePose, Row, Shape, Solution, Statistics, StopReason};
+use crate::solution::{Energies, ProbePose, Row, Shape, Solution, Statistics, StopReason};
 use crate::state::State;
 
 /// Shapes kept beside the start: at the first increments past k/SHAPES of the path.
@@ -16,17 +17,19 @@ const SHAPE_POINTS: usize = 1000;
 /// Collects a solution.
 pub struct Recorder {
     solution: Solution,
+    /// The last parameter there will be.
+    end: f64,
 }
 
 impl Recorder {
-    /// For a model.
-    pub fn new(model: &Model) -> Self {
+    /// For a model whose parameter (load factor or time) runs from 0 to `end`.
+    pub fn new(model: &Model, end: f64) -> Self {
         let solution = Solution {
             unknowns: model.unknowns(),
             warnings: model.warnings().to_vec(),
             ..Solution::default()
         };
-        Self { solution }
+        Self { solution, end }
     }
 
     /// Adds a row for a converged state whose forces the workspace holds.
@@ -40,32 +43,29 @@ impl Recorder {
         let previous = self.solution.rows.last();
         let mut probes = Vec::with_capacity(model.probes.len());
         for (index, probe) in model.probes.iter().enumerate() {
-            let pose =
-                model.pose(state, probe.rod, probe.xi, &probe.offset).map_err(|_| half_turn(model, probe))?;
+            let pose = probe_pose(model, probe, state)?;
             let before = previous.map(|row| &row.probes[index]);
             let quaternion = continuous(quaternion_of(&pose.rotation), before);
             let angles = probe.angles.map(|_| unwrapped(euler_zyx(&pose.rotation), before));
             probes.push(ProbePose { position: pose.position.into(), quaternion: quaternion.into(), angles });
         }
         let reactions = model.joints.iter().map(|joint| {
-            let (rod, work) = (&model.rods[joint.rod], &work.rods[joint.rod]);
-            let support = &rod.supports[joint.support];
-            let pose = &state.poses()[rod.range.start + support.node];
-            let (f, m) =
-                support.reaction(pose, &work.forces.force[support.node], &work.forces.moment[support.node]);
-            let (f, m) = (f * joint.sign, m * joint.sign);
+            let (f, m) = reaction(model, joint, state, work);
             [f.x, f.y, f.z, m.x, m.y, m.z]
         });
         let row = Row { parameter, probes, reactions: reactions.collect() };
         self.solution.rows.push(row);
-        let wanted =
-            self.solution.shapes.last().map_or(0.0, |shape| {
-                ((shape.parameter * SHAPES as f64 + 1e-9).floor() + 1.0) / SHAPES as f64
-            });
-        if parameter >= wanted - 1e-9 {
+        let place = |parameter: f64| parameter / self.end * SHAPES as f64 + 1e-9;
+        let wanted = self.solution.shapes.last().map_or(0.0, |shape| place(shape.parameter).floor() + 1.0);
+        if place(parameter) >= wanted {
             self.solution.shapes.push(shape(model, parameter, state));
         }
         Ok(())
+    }
+
+    /// Adds the energies of the row that was recorded last.
+    pub fn record_energies(&mut self, energies: Energies) {
+        self.solution.energies.push(energies);
     }
 
     /// The solution; warns where the mesh resolves the reference, but not the last state.
@@ -77,11 +77,48 @@ impl Recorder {
     }
 }
 
-fn half_turn(model: &Model, probe: &ProbeModel) -> StopReason {
-    let elements = model.rods[probe.rod].elements;
-    StopReason::HalfTurn {
-        rod: probe.rod,
-        element: ((probe.xi * elements as f64) as usize).min(elements - 1),
+/// The pose of a probe.
+pub fn probe_pose(model: &Model, probe: &ProbeModel, state: &State) -> Result<Pose, StopReason> {
+    match probe.on {
+        ProbedPart::Body(body) => Ok(model.body_pose(state, body, &probe.offset)),
+        ProbedPart::Rod { rod, xi } => model.pose(state, rod, xi, &probe.offset).map_err(|_| {
+            let elements = model.rods[rod].elements;
+            StopReason::HalfTurn { rod, element: ((xi * elements as f64) as usize).min(elements - 1) }
+        }),
+    }
+}
+
+/// (force, moment about the joint's point) on the second of the pair, inertial.
+fn reaction(
+    model: &Model,
+    joint: &JointModel,
+    state: &State,
+    work: &Workspace,
+) -> (Vector3<f64>, Vector3<f64>) {
+    match *joint {
+        JointModel::Held { rod, support, sign } => {
+            let support = &model.rods[rod].supports[support];
+            let node = model.rods[rod].range.start + support.node;
+            let pose = &state.poses()[node];
+            let (f, m) = support.reaction(pose, &work.forces.force[node], &work.forces.moment[node]);
+            (f * sign, m * sign)
+        }
+        JointModel::Coupled(coupling) => {
+            let coupling = &model.couplings[coupling];
+            let poses = coupling.poses(state);
+            let forces =
+                coupling.constraint.forces(poses[0], poses[1], &coupling.multipliers(state));
+            // On the ground acts the opposite of what acts on the other part.
+            let (part, sign) = if coupling.nodes[1].is_some() { (1, 1.0) } else { (0, -1.0) };
+            let (force, moment) = (forces[part].fixed_rows::<3>(0), forces[part].fixed_rows::<3>(3));
+            let (f, m) = coupling.constraint.wrench(
+                part,
+                poses[part],
+                &force.into_owned(),
+                &moment.into_owned(),
+            );
+            (f * sign, m * sign)
+        }
     }
 }
 

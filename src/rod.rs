@@ -11,6 +11,7 @@ use crate::element::{
     internal_force, internal_tangent, line_load_force, line_load_tangent, zero_tangent,
 };
 use crate::fit;
+use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose, R12, Se3};
 use crate::joint::Support;
 use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
@@ -18,6 +19,7 @@ use crate::linear_solver::{Chain, NODE, Singular, Sparse};
 use crate::quadrature::gauss_legendre;
 use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::{InterpolationKind, NodeSpacing, QuadratureKind};
+use crate::section::SectionInertia;
 use crate::state::State;
 
 /// What does not change in a solve: the stiffness, the undeformed strains at the quadrature points of the internal
@@ -28,11 +30,31 @@ pub struct RodProperties {
     pub stiffness: Stiffness,
     /// All points of element 0, then of element 1, ….
     pub points: Vec<ReferencePoint>,
-    /// J at the points of the line-load rule, in the same order; empty where no line load acts.
-    pub load_jacobians: Vec<f64>,
+    /// J at the points of the full rule, in the same order; empty where neither line loads nor inertia need it.
+    pub full_jacobians: Vec<f64>,
+    /// Mass and rotary inertia with m_ij of every element, N² numbers each; absent where none is needed.
+    pub inertia: Option<RodInertia>,
 }
 
-/// Sums over a rod's nodes.
+/// The inertia of a rod, eq. (13).
+#[derive(Clone, Debug, PartialEq)]
+pub struct RodInertia {
+    /// The same all along the rod.
+    pub section: SectionInertia,
+    /// m_ij = ∫ N_i N_j J dx of element 0, row by row, then of element 1, … [m].
+    pub coefficients: Vec<f64>,
+}
+
+/// What a rod is asked to hold beside its stiffness.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Needs {
+    /// J for line loads.
+    pub line_loads: bool,
+    /// The mass matrix.
+    pub inertia: Option<SectionInertia>,
+}
+
+/// Sums over the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct NodalForces {
     /// Force rows, inertial [N].
@@ -72,7 +94,7 @@ impl NodalForces {
         self.moment_scale[node] += moment.norm();
     }
 
-    fn scatter<const N: usize>(&mut self, first: usize, element: &ElementForce<N>) {
+    pub(crate) fn scatter<const N: usize>(&mut self, first: usize, element: &ElementForce<N>) {
         for i in 0..N {
             self.force[first + i] += element.force[i];
             self.moment[first + i] += element.moment[i];
@@ -82,17 +104,30 @@ impl NodalForces {
     }
 }
 
+/// The velocity of nodes at the end of a step, and b = ∂u/∂u̇ of the step.
+#[derive(Clone, Copy, Debug)]
+pub struct StepVelocity<'a> {
+    /// u.
+    pub velocities: &'a [Velocity],
+    /// b [s]; the pose increments are (δr, δφ) = b² diag(1, Y) δu̇.
+    pub b: f64,
+}
+
 /// What acts on a rod, for its tangent; both lists in ascending order of the nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Applied<'a> {
     /// The sum of the line loads.
     pub line_load: &'a LineLoad,
+    /// Whether any line load acts.
+    pub line_loaded: bool,
     /// −∂(load rows)/∂q.
     pub tangents: &'a [(usize, Matrix6<f64>)],
     /// Held nodes.
     pub supports: &'a [Support],
     /// Force rows at the nodes of the rod.
     pub force: &'a [Vector3<f64>],
+    /// In a time step the tangent is b² K + (M + b D) diag(1, Y⁻¹).
+    pub step: Option<StepVelocity<'a>>,
 }
 
 /// Where the element tangents go.
@@ -134,23 +169,43 @@ pub trait RodElements: Debug + Send + Sync {
     /// Weights of the quadrature points of the internal forces in an element.
     fn weights(&self) -> Vec<f64>;
 
-    /// The discrete reference at given poses; with `line_loads`, J for them, too.
+    /// The discrete reference at given poses, and what else is needed.
     fn properties(
         &self,
         poses: &[Pose],
         stiffness: Stiffness,
-        line_loads: bool,
+        needs: &Needs,
     ) -> Result<RodProperties, usize>;
 
-    /// Adds internal forces and line loads; writes the constitutive stresses.
+    /// Adds internal forces and line loads to the rows from the node `first` on; writes the constitutive stresses.
     fn add_forces(
         &self,
         poses: &[Pose],
         properties: &RodProperties,
-        line_load: &LineLoad,
+        line_load: Option<&LineLoad>,
         constitutive: &mut [Stress],
+        first: usize,
         forces: &mut NodalForces,
     ) -> Result<(), usize>;
+
+    /// Adds −M u̇ − fᵍʸʳ(u) of a rod with inertia to the rows from the node `first` on.
+    fn add_inertia(
+        &self,
+        properties: &RodProperties,
+        velocities: &[Velocity],
+        accelerations: &[Velocity],
+        first: usize,
+        forces: &mut NodalForces,
+    );
+
+    /// ½ uᵀ M u [J].
+    fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64;
+
+    /// ∫ W dξ, eq. (18), at given constitutive stresses [J].
+    fn strain_energy(&self, properties: &RodProperties, constitutive: &[Stress]) -> f64;
+
+    /// ∫ N_i J dx of every node [m].
+    fn nodal_lengths(&self, properties: &RodProperties) -> Vec<f64>;
 
     /// Hands every element's tangent to the target.
     fn assemble_tangent(
@@ -196,7 +251,7 @@ pub struct Elements<const N: usize, I> {
     elements: usize,
     nodes: [f64; N],
     rule: Vec<Basis<N>>,
-    load_rule: Vec<Basis<N>>,
+    full_rule: Vec<Basis<N>>,
     interpolation: PhantomData<I>,
 }
 
@@ -251,7 +306,7 @@ where
             elements,
             nodes,
             rule: basis_at_rule(&nodes, &gauss_legendre(points)),
-            load_rule: basis_at_rule(&nodes, &gauss_legendre(full_points(degree))),
+            full_rule: basis_at_rule(&nodes, &gauss_legendre(full_points(degree))),
             interpolation: PhantomData::<I>,
         }))
     }
@@ -278,21 +333,69 @@ where
         self.elements
     }
 
-    /// Adds what acts at the nodes of element e and reduces its held nodes. A node shared by two elements is
-    /// owned by the first.
-    fn add_nodal_terms(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
+    /// J at the full rule's points of element e and m_ij.
+    fn mass_of<'a>(
+        &self,
+        e: usize,
+        properties: &'a RodProperties,
+        inertia: &'a RodInertia,
+    ) -> (&'a [f64], &'a [[f64; N]; N]) {
+        let points = self.full_rule.len();
+        let rows = inertia.coefficients[e * N * N..][..N * N].as_chunks::<N>().0;
+        let mass = rows.first_chunk().unwrap_or_else(|| unreachable!("N rows of N"));
+        (&properties.full_jacobians[e * points..][..points], mass)
+    }
+
+    /// A node shared by two elements is owned by the first.
+    fn owned(e: usize, node: usize) -> bool {
+        e == 0 || node > e * (N - 1)
+    }
+
+    /// Adds the tangents of the loads at the nodes of element e.
+    fn add_loads(&self, e: usize, applied: &Applied, tangent: &mut ElementTangent<N>) {
         let first = e * (N - 1);
-        let owned = |node: usize| e == 0 || node > first;
         let start = applied.tangents.partition_point(|(node, _)| *node < first);
         for (node, block) in applied.tangents[start..].iter().take_while(|(node, _)| *node < first + N) {
-            if owned(*node) {
+            if Self::owned(e, *node) {
                 tangent[node - first][node - first] += block;
             }
         }
+    }
+
+    /// K → b² K + (M + b D) diag(1, Y⁻¹); without inertia b² K.
+    fn add_step(
+        &self,
+        e: usize,
+        properties: &RodProperties,
+        step: &StepVelocity,
+        tangent: &mut ElementTangent<N>,
+    ) {
+        let Some(inertia) = &properties.inertia else {
+            for block in tangent.iter_mut().flatten() {
+                *block *= step.b * step.b;
+            }
+            return;
+        };
+        let (jacobians, mass) = self.mass_of(e, properties, inertia);
+        inertia_tangent::<N>(
+            &self.full_rule,
+            jacobians,
+            mass,
+            &inertia.section,
+            self.of(e, step.velocities),
+            step.b,
+            tangent,
+        );
+    }
+
+    /// Reduces the held nodes of element e.
+    fn hold(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
+        let first = e * (N - 1);
         let start = applied.supports.partition_point(|support| support.node < first);
         for support in applied.supports[start..].iter().take_while(|support| support.node < first + N) {
             let node = support.node;
-            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owned(node));
+            let owner = Self::owned(e, node);
+            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owner);
         }
     }
 }
@@ -309,9 +412,11 @@ where
         &self,
         poses: &[Pose],
         stiffness: Stiffness,
-        line_loads: bool,
+        needs: &Needs,
     ) -> Result<RodProperties, usize> {
-        let mut result = RodProperties { stiffness, points: Vec::new(), load_jacobians: Vec::new() };
+        let mut result =
+            RodProperties { stiffness, points: Vec::new(), full_jacobians: Vec::new(), inertia: None };
+        let full = needs.line_loads || needs.inertia.is_some();
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             for basis in &self.rule {
@@ -325,11 +430,17 @@ where
                 let (gamma, kappa) = (strain.gamma / jacobian, strain.kappa / jacobian);
                 result.points.push(ReferencePoint { jacobian, gamma, kappa });
             }
-            for basis in self.load_rule.iter().filter(|_| line_loads) {
+            for basis in self.full_rule.iter().filter(|_| full) {
                 let strain = I::strain(nodes, basis).map_err(|_| e)?;
                 let inverse = strain.rotation.transpose().try_inverse().ok_or(e)?;
-                result.load_jacobians.push((inverse * strain.gamma).norm());
+                result.full_jacobians.push((inverse * strain.gamma).norm());
             }
+        }
+        if let Some(section) = needs.inertia {
+            let jacobians = result.full_jacobians.chunks_exact(self.full_rule.len());
+            let coefficients = jacobians
+                .flat_map(|jacobians| mass_coefficients::<N>(&self.full_rule, jacobians).into_iter().flatten());
+            result.inertia = Some(RodInertia { section, coefficients: coefficients.collect() });
         }
         Ok(result)
     }
@@ -338,26 +449,83 @@ where
         &self,
         poses: &[Pose],
         properties: &RodProperties,
-        line_load: &LineLoad,
+        line_load: Option<&LineLoad>,
         constitutive: &mut [Stress],
+        first: usize,
         forces: &mut NodalForces,
     ) -> Result<(), usize> {
-        let (q, lq) = (self.rule.len(), self.load_rule.len());
-        let loaded = !properties.load_jacobians.is_empty();
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             let mut element = ElementForce::default();
             let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
             internal_force::<N, I>(nodes, &self.rule, points, &properties.stiffness, stresses, &mut element)
                 .map_err(|_| e)?;
-            if loaded {
-                let jacobians = &properties.load_jacobians[e * lq..][..lq];
-                line_load_force::<N, I>(nodes, &self.load_rule, jacobians, line_load, &mut element)
+            if let Some(line_load) = line_load {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
                     .map_err(|_| e)?;
             }
-            forces.scatter(e * (N - 1), &element);
+            forces.scatter(first + e * (N - 1), &element);
         }
         Ok(())
+    }
+
+    fn add_inertia(
+        &self,
+        properties: &RodProperties,
+        velocities: &[Velocity],
+        accelerations: &[Velocity],
+        first: usize,
+        forces: &mut NodalForces,
+    ) {
+        let Some(inertia) = &properties.inertia else { return };
+        for e in 0..self.elements {
+            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let mut element = ElementForce::default();
+            inertia_force::<N>(
+                &self.full_rule,
+                jacobians,
+                mass,
+                &inertia.section,
+                self.of(e, velocities),
+                self.of(e, accelerations),
+                &mut element,
+            );
+            forces.scatter(first + e * (N - 1), &element);
+        }
+    }
+
+    fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64 {
+        let Some(inertia) = &properties.inertia else { return 0.0 };
+        let of_element = |e| {
+            let mass = self.mass_of(e, properties, inertia).1;
+            kinetic_energy::<N>(mass, &inertia.section, self.of(e, velocities))
+        };
+        (0..self.elements).map(of_element).sum()
+    }
+
+    fn strain_energy(&self, properties: &RodProperties, constitutive: &[Stress]) -> f64 {
+        let stiffness = &properties.stiffness;
+        let weights = self.rule.iter().map(|basis| basis.weight).cycle();
+        let density = |stress: &Stress| {
+            0.5 * (stress.force.dot(&stress.force.component_div(&stiffness.force))
+                + stress.moment.dot(&stress.moment.component_div(&stiffness.moment)))
+        };
+        let points = properties.points.iter().zip(constitutive).zip(weights);
+        points.map(|((point, stress), weight)| weight * point.jacobian * density(stress)).sum()
+    }
+
+    fn nodal_lengths(&self, properties: &RodProperties) -> Vec<f64> {
+        let mut lengths = vec![0.0; self.elements * (N - 1) + 1];
+        for (e, jacobians) in properties.full_jacobians.chunks_exact(self.full_rule.len()).enumerate() {
+            for (basis, jacobian) in self.full_rule.iter().zip(jacobians) {
+                for (length, value) in lengths[e * (N - 1)..].iter_mut().zip(&basis.value) {
+                    *length += basis.weight * jacobian * value;
+                }
+            }
+        }
+        lengths
     }
 
     fn assemble_tangent(
@@ -369,10 +537,14 @@ where
         applied: &Applied,
         target: &mut Target,
     ) -> Result<(), TangentError> {
-        let (q, lq) = (self.rule.len(), self.load_rule.len());
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
         let poses = &state.poses()[range.clone()];
-        let loaded = !properties.load_jacobians.is_empty() && applied.line_load.turns();
-        for e in 0..self.elements {
+        let turning = applied.line_loaded && applied.line_load.turns();
+        for step in 0..self.elements {
+            let e = match target {
+                Target::Chain(chain) => chain.element(step),
+                Target::Quaternions { .. } => step,
+            };
             let nodes = self.of(e, poses);
             let mut tangent = zero_tangent::<N>();
             let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
@@ -385,14 +557,18 @@ where
                 &mut tangent,
             )
             .map_err(|_| TangentError::HalfTurn(e))?;
-            if loaded {
-                let jacobians = &properties.load_jacobians[e * lq..][..lq];
-                line_load_tangent::<N, I>(nodes, &self.load_rule, jacobians, applied.line_load, &mut tangent)
+            if turning {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_tangent::<N, I>(nodes, &self.full_rule, jacobians, applied.line_load, &mut tangent)
                     .map_err(|_| TangentError::HalfTurn(e))?;
             }
-            self.add_nodal_terms(e, poses, applied, &mut tangent);
+            self.add_loads(e, applied, &mut tangent);
+            if let Some(step) = &applied.step {
+                self.add_step(e, properties, step, &mut tangent);
+            }
+            self.hold(e, poses, applied, &mut tangent);
             match target {
-                Target::Chain(chain) => chain.add_element(e, &tangent)?,
+                Target::Chain(chain) => chain.add_element(step, &tangent)?,
                 Target::Quaternions { system, first_row } => {
                     let first = e * (N - 1);
                     let quaternions = &state.quaternions()[range.clone()];

@@ -1,4 +1,4 @@
-//! Cross-section and material → stiffness and mass.
+//! Cross-section and material → stiffness and inertia.
 
 use std::f64::consts::PI;
 
@@ -50,6 +50,35 @@ pub fn stiffness(section: &Section, material: Option<&Material>) -> Option<Stiff
             Some(Stiffness {
                 force: Vector3::new(e * area, shear, shear),
                 moment: Vector3::new(g * torsion, e * second_y, e * second_z),
+            })
+        }
+    }
+}
+
+/// Inertia of a cross-section per reference length, about its centre and along its principal axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionInertia {
+    /// A_ρ0 = ρA [kg/m].
+    pub mass_per_length: f64,
+    /// Diagonal of I_ρ0 = ρ diag(I_y + I_z, I_y, I_z) in the cross-section basis [kg m].
+    pub rotary: Vector3<f64>,
+}
+
+/// A_ρ0 and I_ρ0 of eq. (3); `None` if the density, or a part of a custom inertia, is not given.
+///
+/// About e_x it is the polar moment ρ ∫ y² + z² dA whatever the torsion constant, which is about stiffness only.
+pub fn inertia(section: &Section, material: Option<&Material>) -> Option<SectionInertia> {
+    match section {
+        Section::Custom { mass_per_length, rotary_inertia, .. } => Some(SectionInertia {
+            mass_per_length: (*mass_per_length)?,
+            rotary: Vector3::from((*rotary_inertia)?),
+        }),
+        Section::Circle { .. } | Section::Rectangle { .. } => {
+            let density = material?.density?;
+            let (area, second_y, second_z) = geometry(section)?;
+            Some(SectionInertia {
+                mass_per_length: density * area,
+                rotary: density * Vector3::new(second_y + second_z, second_y, second_z),
             })
         }
     }

@@ -16,7 +16,7 @@ pub struct ProbePose {
 /// One accepted increment; the first row is the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The load factor.
+    /// The load factor, or the time [s].
     pub parameter: f64,
     /// One pose for every probe of the scene, in its order.
     pub probes: Vec<ProbePose>,
@@ -27,10 +27,47 @@ pub struct Row {
 /// A deformed shape, for plots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// The load factor.
+    /// The load factor, or the time [s].
     pub parameter: f64,
     /// For every rod, points of its centreline from ξ = 0 to ξ = 1 [m].
     pub rods: Vec<Vec<[f64; 3]>>,
+}
+
+/// Energies and the joints' violation at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Of rods and bodies [J].
+    pub kinetic: f64,
+    /// ∫ W of the rods, eq. (18), by the quadrature of the internal forces [J].
+    pub strain: f64,
+    /// −Σ m g·r, zero at the inertial origin [J].
+    pub gravity: f64,
+    /// Largest position-level violation of a joint [m, rad].
+    pub constraint: f64,
+}
+
+impl Energies {
+    /// Kinetic + strain + gravity [J]; other loads have no share.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.strain + self.gravity
+    }
+}
+
+/// A small free vibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// ω [rad/s]; −|ω| where ω² < 0: the equilibrium is unstable and the mode grows as e^{|ω| t}.
+    pub angular_frequency: f64,
+    /// For every probe the amplitudes of its displacement (inertial) and rotation vector (inertial); the largest
+    /// is 1.
+    pub shape: Vec<[f64; 6]>,
+}
+
+impl Mode {
+    /// f = ω/2π [Hz].
+    pub fn frequency(&self) -> f64 {
+        self.angular_frequency / std::f64::consts::TAU
+    }
 }
 
 /// Counted work; integers are the same from run to run.
@@ -57,6 +94,10 @@ pub struct Solution {
     pub unknowns: usize,
     /// The start and every accepted increment.
     pub rows: Vec<Row>,
+    /// Dynamics: one a row; otherwise empty.
+    pub energies: Vec<Energies>,
+    /// Modes: from the lowest frequency; otherwise empty.
+    pub modes: Vec<Mode>,
     /// The start, the end and a few shapes between them.
     pub shapes: Vec<Shape>,
     /// Counted work.
@@ -89,6 +130,39 @@ pub enum SolveError {
         /// The largest load factor that converged.
         reached: f64,
     },
+    /// A time step did not reach the tolerance.
+    #[error(
+        "the step to time {time:?} s failed: after {iterations} iterations the residual is {residual:.3e}, the \
+         tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s"
+    )]
+    Step {
+        /// The time that was tried [s].
+        time: f64,
+        /// Iterations spent on it.
+        iterations: usize,
+        /// The last finite residual, in the units of the active test.
+        residual: f64,
+        /// What it was held against.
+        tolerance: f64,
+        /// What ended the iteration.
+        reason: StopReason,
+        /// Steps that had converged before.
+        steps: usize,
+        /// The last time that converged [s].
+        reached: f64,
+    },
+    /// There are no accelerations and joint forces that agree with the start.
+    #[error("no accelerations found that agree with the start: {reason}")]
+    InitialAcceleration {
+        /// What ended the search.
+        reason: StopReason,
+    },
+    /// The frequencies about the equilibrium were not found.
+    #[error("no frequencies found: {reason}")]
+    Modes {
+        /// What ended the search.
+        reason: StopReason,
+    },
     /// The loads that act at load factor 0 already could not be brought up.
     #[error(
         "no equilibrium found under the loads that act at load factor 0: after {iterations} iterations the residual is \
@@ -118,6 +192,12 @@ pub enum StopReason {
     /// A number overflowed, or the tangent is singular.
     #[error("the tangent is singular or a number overflowed")]
     Singular,
+    /// A constraint that followed from others at the start, and was not imposed, does so no longer.
+    #[error("a constraint that closes a loop of joints followed from others at the start and now does not")]
+    Departed {
+        /// Index among the joints with multipliers.
+        coupling: usize,
+    },
     /// Neighbouring nodes are half a turn apart, where the relative rotation has no logarithm.
     #[error("element {element} of rod.{rod} is turned by half a turn between its nodes")]
     HalfTurn {

@@ -1,4 +1,5 @@
-//! The unknowns: nodal positions and quaternions, and how an increment is added to them.
+//! The unknowns: nodal positions and quaternions with how an increment is added to them, and the joints'
+//! multipliers.
 
 use nalgebra::{Vector3, Vector4};
 
@@ -7,11 +8,12 @@ use crate::rotation::{
     normalized, quaternion_exp, quaternion_of, quaternion_product, rotation_matrix, rotation_vector,
 };
 
-/// Nodal positions and quaternions; the matrices A(P) are kept beside them.
+/// Nodal positions and quaternions, the matrices A(P) beside them, and the multipliers of the joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
     quaternions: Vec<Vector4<f64>>,
     poses: Vec<Pose>,
+    multipliers: Vec<f64>,
 }
 
 impl State {
@@ -44,6 +46,21 @@ impl State {
     /// Nodal quaternions.
     pub fn quaternions(&self) -> &[Vector4<f64>] {
         &self.quaternions
+    }
+
+    /// λ of the joints that have multipliers [N, N m].
+    pub fn multipliers(&self) -> &[f64] {
+        &self.multipliers
+    }
+
+    /// λ, to be changed.
+    pub fn multipliers_mut(&mut self) -> &mut [f64] {
+        &mut self.multipliers
+    }
+
+    /// Sets all multipliers to zero, as many as given.
+    pub(crate) fn set_multiplier_count(&mut self, count: usize) {
+        self.multipliers = vec![0.0; count];
     }
 
     /// r ← r + δr, P ← P ∘ exp(δφ), kept at unit norm.

@@ -4,7 +4,7 @@ use crate::assembly::{LoadLevel, Workspace, place_supports};
 use crate::element::Stress;
 use crate::interpolation::Increment;
 use crate::model::Model;
-use crate::newton::{Converged, Newton, NotConverged, Test};
+use crate::newton::{Converged, Equilibrium, Newton, NotConverged, Test};
 use crate::recorder::Recorder;
 use crate::scene::Statics;
 use crate::solution::{Solution, SolveError, SolveFailure, Statistics, StopReason};
@@ -84,7 +84,7 @@ impl<'a> Path<'a> {
             last: Point { place: 0.0, state: model.reference.clone(), stresses },
             before: None,
             extrapolate: false,
-            recorder: Recorder::new(model),
+            recorder: Recorder::new(model, 1.0),
             progress,
         }
     }
@@ -106,7 +106,7 @@ impl<'a> Path<'a> {
         // The first row is the start: the undeformed rods where the loads that act at once could not be brought up.
         let start = level(self.last.place);
         self.work
-            .evaluate(self.model, &self.last.state, &start)
+            .evaluate(self.model, &self.last.state, &start, None)
             .and_then(|()| self.recorder.record(self.model, 0.0, &self.last.state, &self.work))
             .map_err(|reason| self.error(0.0, &NotConverged { iterations: 0, residual: 0.0, reason }))?;
         brought_up?;
@@ -175,18 +175,17 @@ impl<'a> Path<'a> {
         self.statistics.newton_iterations += 1;
         self.statistics.factorizations += 1;
         let answered = work
-            .evaluate(self.model, state, &target)
-            .and_then(|()| work.factorize(self.model, state, &target))
-            .and_then(|()| work.solve(self.model, state));
+            .evaluate(self.model, state, &target, None)
+            .and_then(|()| work.factorize(self.model, state, &target, None))
+            .and_then(|()| work.solve(self.model, state, 1.0));
         if answered.is_err() {
             return UNKNOWN_STEP * whole;
         }
         let mut size = 0.0_f64;
-        for (rod, work) in self.model.rods.iter().zip(&work.rods) {
-            for increment in &work.increments {
-                // The largest component: its square may overflow where it does not.
-                size = size.max(increment.rotation.amax()).max(increment.translation.amax() / rod.length);
-            }
+        for increment in &work.increments {
+            // The largest component: its square may overflow where it does not.
+            let moved = increment.translation.amax() / self.model.size;
+            size = size.max(increment.rotation.amax()).max(moved);
         }
         if size.is_finite() { whole * (FIRST_ROTATION / size).min(1.0) } else { UNKNOWN_STEP * whole }
     }
@@ -201,8 +200,13 @@ impl<'a> Path<'a> {
             self.predict(place, &mut state);
         }
         let newton = Newton { max_iterations, ..self.newton };
-        let converged =
-            newton.solve(self.model, &level(place), &mut state, &mut self.work, &mut self.statistics)?;
+        let mut equilibrium = Equilibrium {
+            model: self.model,
+            level: level(place),
+            state: &mut state,
+            work: &mut self.work,
+        };
+        let converged = newton.solve(&mut equilibrium, &mut self.statistics)?;
         state.normalize();
         let Converged { iterations, residual } = converged;
         if place > 0.0 {
@@ -234,6 +238,10 @@ impl<'a> Path<'a> {
                     rotation: increment.rotation * factor,
                 },
             );
+        }
+        let multipliers = self.last.state.multipliers().iter().zip(before.state.multipliers());
+        for (multiplier, (last, before)) in state.multipliers_mut().iter_mut().zip(multipliers) {
+            *multiplier = last + (last - before) * factor;
         }
         for rod in &self.model.rods {
             place_supports(rod, state);

@@ -1,62 +1,188 @@
-//! Rigid motions that the joints of a rod leave free: in statics there is no solution then.
+//! Rigid motions that the joints leave free: in statics there is no solution then, nor for rods without mass.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix6, Vector3};
 
+use super::Model;
 use crate::error::SceneError;
-use crate::model::{Model, RodModel};
+use crate::interpolation::Pose;
+use crate::linear_solver::NODE;
 use crate::rotation::{direction, skew};
+use crate::scene::{Analysis, Scene};
 
-/// Refuses the first rod that can move without strain, naming the motion.
-pub fn refuse(model: &Model) -> Result<(), SceneError> {
-    for rod in &model.rods {
-        if let Some((translation, rotation)) = free_motion(model, rod)? {
-            let motion = describe(&(translation, rotation), &(rod.origin + base(rod)));
-            return Err(SceneError::new(
-                "joint",
-                format!("leaves rod `{}` free to move without strain: {motion}", rod.name),
-                "joints to the ground that hold every rod",
-            ));
+/// Refuses what can move without strain and without inertia: in statics any part, in dynamics a rod without mass.
+/// Modes need an equilibrium first, if anything is loaded.
+pub fn refuse(model: &Model, scene: &Scene) -> Result<(), SceneError> {
+    let loaded = model.courses().next().is_some();
+    let parts = parts(model);
+    let (moving, why): (Vec<bool>, _) = match scene.analysis() {
+        Some(Analysis::Dynamics(_)) => (parts.iter().map(|part| part.massless).collect(), "without inertia"),
+        Some(Analysis::Modes(_)) if !loaded => {
+            (parts.iter().map(|part| part.massless).collect(), "without inertia")
+        }
+        _ => (vec![true; parts.len()], "without strain"),
+    };
+    let Some((part, translation, rotation)) = free_motion(model, &parts, &moving)? else { return Ok(()) };
+    let part = &parts[part];
+    let motion = describe(&(translation, rotation), &(part.origin + part.base));
+    Err(SceneError::new(
+        "joint",
+        format!("leaves {} free to move {why}: {motion}", part.name),
+        "joints to the ground that hold every rod and every body",
+    ))
+}
+
+/// A rod or a body as a rigid part.
+struct Part {
+    name: String,
+    massless: bool,
+    /// What its positions are relative to.
+    origin: Vector3<f64>,
+    /// Where its motions are taken about, relative to the origin: a joint, so that one alone has no lever.
+    base: Vector3<f64>,
+    size: f64,
+}
+
+fn parts(model: &Model) -> Vec<Part> {
+    let rods = model.rods.iter().map(|rod| {
+        let joined = || {
+            let nodes = model.couplings.iter().flat_map(|coupling| coupling.nodes.into_iter().flatten());
+            let node = nodes.into_iter().find(|node| rod.range.contains(node));
+            node.map(|node| model.reference.poses()[node].position)
+        };
+        let held = rod.supports.first().map(|support| support.anchor);
+        Part {
+            name: format!("rod `{}`", rod.name),
+            massless: rod.properties.inertia.is_none(),
+            origin: rod.origin,
+            base: held.or_else(joined).unwrap_or_else(Vector3::zeros),
+            size: rod.length,
+        }
+    });
+    let bodies = model.bodies.iter().map(|body| {
+        let mine = model.couplings.iter().filter(|coupling| coupling.nodes.contains(&Some(body.node)));
+        Part {
+            name: format!("body `{}`", body.name),
+            massless: false,
+            origin: body.origin,
+            base: Vector3::zeros(),
+            size: mine.map(|coupling| coupling.reach).fold(0.0, f64::max),
+        }
+    });
+    rods.chain(bodies).collect()
+}
+
+/// The part that a node of the model belongs to.
+fn part_of(model: &Model, node: usize) -> usize {
+    let rod = model.rods.iter().position(|rod| rod.range.contains(&node));
+    rod.unwrap_or_else(|| model.rods.len() + node - model.rods.last().map_or(0, |rod| rod.range.end))
+}
+
+/// (δr, δφ) of a node under the motion (v, ω) of its part: δr = v + ω × (r − c), δφ = Aᵀ ω.
+fn carried(pose: &Pose, base: &Vector3<f64>, size: f64) -> Matrix6<f64> {
+    let mut map = Matrix6::zeros();
+    // v in units of the size.
+    map.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(size);
+    map.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&(pose.position - base)));
+    map.fixed_view_mut::<3, 3>(3, 3).copy_from(&pose.rotation.transpose());
+    map
+}
+
+/// A part, with its velocity at its base and its rotation, that can move though every joint holds; parts that are
+/// not `moving` stand still.
+///
+/// A held node with free body rotations P and anchor c asks v + ω × (c − base) = 0 and (1 − P) Aᵀ ω = 0, a coupling
+/// G (δr, δφ) = 0. Lengths are divided by the size of the mechanism, so that the rank is one of pure numbers.
+fn free_motion(
+    model: &Model,
+    parts: &[Part],
+    moving: &[bool],
+) -> Result<Option<(usize, Vector3<f64>, Vector3<f64>)>, SceneError> {
+    for component in components(model, parts.len(), moving) {
+        let size = component.iter().map(|&part| parts[part].size).fold(0.0, f64::max);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let column = |part: usize| component.iter().position(|&other| other == part).map(|k| NODE * k);
+        let width = NODE * component.len();
+        let mut rows: Vec<(usize, Matrix6<f64>, Option<(usize, Matrix6<f64>)>)> = Vec::new();
+        for (index, rod) in model.rods.iter().enumerate() {
+            let Some(start) = column(index) else { continue };
+            for support in &rod.supports {
+                let pose = &model.reference.poses()[rod.range.start + support.node];
+                let mut block = Matrix6::zeros();
+                let arm = (support.anchor - parts[index].base) / size;
+                block.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
+                block.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&arm));
+                let held = (nalgebra::Matrix3::identity() - support.free) * pose.rotation.transpose();
+                block.fixed_view_mut::<3, 3>(3, 3).copy_from(&held);
+                rows.push((start, block, None));
+            }
+        }
+        for coupling in &model.couplings {
+            let [a, b] = coupling.poses(&model.reference);
+            let mut blocks = Vec::new();
+            for (node, part) in coupling.nodes.iter().zip(coupling.constraint.jacobian(a, b)) {
+                let Some(node) = *node else { continue };
+                let owner = part_of(model, node);
+                let Some(start) = column(owner) else { continue };
+                let mut block =
+                    part * carried(&model.reference.poses()[node], &parts[owner].base, size);
+                let mut lengths = block.fixed_view_mut::<3, 6>(0, 0);
+                lengths /= size;
+                blocks.push((start, block));
+            }
+            let mut blocks = blocks.into_iter();
+            if let Some((start, block)) = blocks.next() {
+                rows.push((start, block, blocks.next()));
+            }
+        }
+        // Zero rows pad the matrix so that the decomposition has all right singular vectors.
+        let mut matrix = DMatrix::zeros((NODE * rows.len()).max(width), width);
+        for (index, (start, block, other)) in rows.iter().enumerate() {
+            let blocks = std::iter::once((start, block)).chain(other.iter().map(|(start, block)| (start, block)));
+            for (&start, block) in blocks {
+                let mut view = matrix.view_mut((NODE * index, start), (NODE, NODE));
+                view += block;
+            }
+        }
+        let name = || component.first().map_or("", |&part| parts[part].name.as_str());
+        let beyond = || {
+            let problem = format!("holds {} at points beyond all numbers", name());
+            SceneError::new("joint", problem, "points within reach of the parts")
+        };
+        if !matrix.iter().all(|x: &f64| x.is_finite()) {
+            return Err(beyond());
+        }
+        let decomposition = matrix.try_svd(false, true, f64::EPSILON, 10_000).ok_or_else(beyond)?;
+        let (index, value) = decomposition.singular_values.argmin();
+        let Some(motion) = decomposition.v_t.filter(|_| value <= 1e-9) else { continue };
+        let motion = motion.row(index).transpose();
+        let (k, part) = component
+            .iter()
+            .enumerate()
+            .max_by(|a, b| {
+                let of = |k: usize| motion.rows(NODE * k, NODE).norm();
+                of(a.0).total_cmp(&of(b.0)).then(b.0.cmp(&a.0))
+            })
+            .map_or((0, 0), |(k, &part)| (k, part));
+        let of = |i: usize| Vector3::from_fn(|j, _| motion[NODE * k + i + j]);
+        return Ok(Some((part, of(0) * size, of(3))));
+    }
+    Ok(None)
+}
+
+/// The moving parts, by what is joined without the help of the ground or of parts that stand still.
+fn components(model: &Model, count: usize, moving: &[bool]) -> Vec<Vec<usize>> {
+    let mut label: Vec<usize> = (0..count).collect();
+    for coupling in &model.couplings {
+        if let [Some(a), Some(b)] = coupling.nodes.map(|node| node.map(|node| part_of(model, node)))
+            && moving[a]
+            && moving[b]
+        {
+            let (from, to) = (label[a].max(label[b]), label[a].min(label[b]));
+            label.iter_mut().filter(|label| **label == from).for_each(|label| *label = to);
         }
     }
-    Ok(())
-}
-
-/// Where motions are taken about: the first support, so that one alone has no lever, wherever it is.
-fn base(rod: &RodModel) -> Vector3<f64> {
-    rod.supports.first().map_or_else(Vector3::zeros, |support| support.anchor)
-}
-
-/// A rigid motion and its rotation.
-type Motion = (Vector3<f64>, Vector3<f64>);
-
-/// A rigid motion (v, ω): r ↦ v + ω × (r − base) that every support of the rod allows.
-///
-/// A support with free body rotations P and anchor c asks v + ω × (c − base) = 0 and (1 − P) Aᵀ ω = 0. Lengths are
-/// divided by the rod's, so that the rank is one of pure numbers.
-fn free_motion(model: &Model, rod: &RodModel) -> Result<Option<Motion>, SceneError> {
-    // Zero rows pad the matrix so that the decomposition has all six right singular vectors.
-    let mut rows = DMatrix::zeros(6 * rod.supports.len().max(1), 6);
-    for (index, support) in rod.supports.iter().enumerate() {
-        let pose = &model.reference.poses()[rod.range.start + support.node];
-        let held = (nalgebra::Matrix3::identity() - support.free) * pose.rotation.transpose();
-        let mut block = rows.fixed_view_mut::<6, 6>(6 * index, 0);
-        block.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
-        block.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&((support.anchor - base(rod)) / rod.length)));
-        block.fixed_view_mut::<3, 3>(3, 3).copy_from(&held);
-    }
-    let beyond = || {
-        let problem = format!("holds rod `{}` at points beyond all numbers", rod.name);
-        SceneError::new("joint", problem, "points within reach of the rod")
-    };
-    if !rows.iter().all(|x: &f64| x.is_finite()) {
-        return Err(beyond());
-    }
-    let decomposition = rows.try_svd(false, true, f64::EPSILON, 10_000).ok_or_else(beyond)?;
-    let (index, value) = decomposition.singular_values.argmin();
-    let Some(motion) = decomposition.v_t.filter(|_| value <= 1e-9) else { return Ok(None) };
-    let motion = motion.row(index).transpose();
-    let v = Vector3::new(motion[0], motion[1], motion[2]) * rod.length;
-    Ok(Some((v, Vector3::new(motion[3], motion[4], motion[5]))))
+    let members = |root: usize| (0..count).filter(|&part| moving[part] && label[part] == root).collect();
+    (0..count).map(members).filter(|members: &Vec<usize>| !members.is_empty()).collect()
 }
 
 /// The motion in words: the translation, or the axis and a point on it.

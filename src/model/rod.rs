@@ -10,8 +10,8 @@ use crate::error::SceneError;
 use crate::interpolation::Pose;
 use crate::load::Course;
 use crate::model::RodModel;
-use crate::rod::{RodElements, rod_elements};
-use crate::scene::{Basis, LoadKind, Reference, Rod, Scene};
+use crate::rod::{Needs, RodElements, rod_elements};
+use crate::scene::{Analysis, Basis, LoadKind, Reference, Rod, Scene};
 use crate::section;
 use crate::state::State;
 
@@ -35,12 +35,19 @@ pub fn build(
     let curve = curve.relative_to(&origin);
     let nodes = reference_nodes(rod, &*kernel, &curve, &key)?;
     let line_loads = line_loads(scene, rod);
-    let properties = kernel.properties(nodes.poses(), stiffness, !line_loads.is_empty()).map_err(|e| {
+    let moves = !matches!(scene.analysis(), Some(Analysis::Statics(_)) | None);
+    let inertia = section::inertia(&rod.section, rod.material.as_ref()).filter(|_| moves && rod.inertia);
+    let needs = Needs { line_loads: !line_loads.is_empty(), inertia };
+    let properties = kernel.properties(nodes.poses(), stiffness, &needs).map_err(|e| {
         too_few(rod, &key, format!("is too coarse: element {e} is degenerate"), 2 * rod.elements)
     })?;
-    let weights = kernel.weights();
-    let lengths = properties.points.chunks_exact(weights.len()).map(|points| {
-        points.iter().zip(&weights).map(|(point, weight)| point.jacobian * weight).sum::<f64>()
+    let weights = match weight_per_length(scene, rod) {
+        Some(weight) => kernel.nodal_lengths(&properties).iter().map(|length| weight * *length).collect(),
+        None => Vec::new(),
+    };
+    let rule = kernel.weights();
+    let lengths = properties.points.chunks_exact(rule.len()).map(|points| {
+        points.iter().zip(&rule).map(|(point, weight)| point.jacobian * weight).sum::<f64>()
     });
     let (length, element_length) =
         lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, f64::min(least, x)));
@@ -58,6 +65,7 @@ pub fn build(
         point_loads: Vec::new(),
         line_loads,
         element_length,
+        weights,
     };
     Ok((model, nodes))
 }
@@ -125,14 +133,17 @@ fn reference_nodes(
     Ok(nodes)
 }
 
+/// Its weight per reference length, where it takes part in gravity [N/m].
+fn weight_per_length(scene: &Scene, rod: &Rod) -> Option<Vector3<f64>> {
+    let gravity = scene.gravity.filter(|gravity| rod.gravity && *gravity != [0.0; 3])?;
+    Some(Vector3::from(gravity) * section::mass_per_length(&rod.section, rod.material.as_ref())?)
+}
+
 /// Gravity and the line loads on a rod.
 fn line_loads(scene: &Scene, rod: &Rod) -> Vec<(LineLoad, Course)> {
     let mut result = Vec::new();
-    if let (Some(gravity), true) = (scene.gravity, rod.gravity)
-        && let Some(mass) = section::mass_per_length(&rod.section, rod.material.as_ref())
-    {
-        let force = Vector3::from(gravity) * mass;
-        result.push((LineLoad { force, ..LineLoad::default() }, Course::Ramp));
+    if let Some(force) = weight_per_length(scene, rod) {
+        result.push((LineLoad { force, ..LineLoad::default() }, Course::default_for(scene)));
     }
     for load in scene.load.iter().filter(|load| load.on == rod.name) {
         let value = Vector3::from(load.value);
@@ -144,7 +155,7 @@ fn line_loads(scene: &Scene, rod: &Rod) -> Vec<(LineLoad, Course)> {
             (LoadKind::LineMoment, Basis::Body) => line.body_moment = value,
             (LoadKind::Force | LoadKind::Moment, _) => continue,
         }
-        result.push((line, Course::new(load.time.as_ref(), Course::Ramp)));
+        result.push((line, Course::new(load.time.as_ref(), scene)));
     }
     result
 }

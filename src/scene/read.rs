@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
+use super::validate::one_analysis;
 use super::{CurveShape, Scene};
 use crate::error::{Error, SceneError};
 pub(super) use explain::{hint, one_of};
@@ -76,6 +77,7 @@ impl SceneFile {
     fn interpret(&self) -> Result<Scene, SceneError> {
         refuse_non_finite(&self.document)?;
         refuse_unavailable(&self.document)?;
+        refuse_several_analyses(&self.document)?;
         let mut scene = explain::deserialize(&self.document)?;
         scene.validate()?;
         if let Some(folder) = &self.folder {
@@ -209,18 +211,24 @@ pub(super) fn refuse_non_finite(document: &Value) -> Result<(), SceneError> {
     walk(document, "")
 }
 
-/// Refuses the tables that scenes may have one day.
+/// Refuses what scenes may have one day.
 fn refuse_unavailable(document: &Value) -> Result<(), SceneError> {
-    let only_statics = "the analysis `[statics]`";
-    let only_rods = "rods, joints between a rod and the ground, loads and probes";
-    for (key, expected) in
-        [("body", only_rods), ("dynamics", only_statics), ("modes", only_statics), ("study", only_statics)]
-    {
-        if document.get(key).is_some() {
-            return Err(SceneError::new(key, "is not available yet", expected));
-        }
+    if document.get("study").is_some() {
+        let expected = "one of the analyses `[statics]`, `[dynamics]` and `[modes]`";
+        return Err(SceneError::new("study", "is not available yet", expected));
+    }
+    let dynamics = document.get("dynamics");
+    if dynamics.and_then(|table| table.get("accuracy")).is_some() {
+        let problem = "is not available yet: the step is not chosen by the local error";
+        return Err(SceneError::new("dynamics.accuracy", problem, "a constant `time_step` [s] instead"));
     }
     Ok(())
+}
+
+/// Before the entries of an analysis are looked at: a surplus one need not be complete.
+fn refuse_several_analyses(document: &Value) -> Result<(), SceneError> {
+    let present = ["statics", "dynamics", "modes"].map(|table| document.get(table).is_some());
+    if present == [false; 3] { Ok(()) } else { one_analysis(present) }
 }
 
 /// Makes the files of given poses independent of the scene's folder and of the current one, so that

@@ -1,7 +1,7 @@
 //! From serde's errors to messages that name the key and say in the user's words what is expected.
 //!
 //! serde_path_to_error knows the path, except inside tagged tables (`curve`, `section`,
-//! `reference`): serde reads those twice and forgets where it was. There the key is found again,
+//! `reference`, `shape`): serde reads those twice and forgets where it was. There the key is found again,
 //! by its name where the message has it, otherwise by leaving out one entry at a time.
 
 use serde_path_to_error::Segment;
@@ -32,15 +32,15 @@ fn refuse_arrays(document: &Value) -> Result<(), SceneError> {
         }
         _ => Ok(()),
     };
-    for key in ["statics", "plot"] {
+    for key in ["statics", "dynamics", "modes", "plot"] {
         table(document.get(key), key.to_owned())?;
     }
-    for key in ["rod", "joint", "load", "probe"] {
+    for key in ["rod", "body", "joint", "load", "probe"] {
         let entries = document.get(key).and_then(Value::as_array);
         for (index, entry) in entries.into_iter().flatten().enumerate() {
             let key = format!("{key}.{index}");
             table(Some(entry), key.clone())?;
-            for part in ["curve", "section", "material", "reference"] {
+            for part in ["curve", "section", "material", "reference", "shape"] {
                 table(entry.get(part), beneath(&key, part))?;
             }
         }
@@ -97,7 +97,7 @@ fn unknown_key(
     mut candidates: Vec<String>,
 ) -> SceneError {
     let tagged = lookup(document, &path).is_some_and(|table| table.get("kind").is_some());
-    if tagged && !candidates.iter().any(|candidate| candidate == "kind") {
+    if tagged && name != "kind" && !candidates.iter().any(|candidate| candidate == "kind") {
         candidates.insert(0, "kind".into());
     }
     // The placement is flattened beside the shape, so serde does not list it there.
@@ -248,6 +248,7 @@ fn describe(path: &[String]) -> Option<&'static str> {
     Some(match path.last()?.as_str() {
         "name" | "title" => "a string in quotes",
         "gravity" if path.len() == 1 => "an acceleration `[x, y, z]` [m/s²]",
+        "inertia" if table == Some("body") => "three principal moments of inertia `[x, y, z]` [kg m²]",
         "gravity" | "inertia" => "true or false",
         "curve" => "a table such as `{ kind = \"line\", length = 1.0 }`",
         "section" => "a table such as `{ kind = \"circle\", diameter = 1e-3 }`",
@@ -263,6 +264,7 @@ fn describe(path: &[String]) -> Option<&'static str> {
             ("rod", Some("curve")) => "\"line\", \"arc\", \"helix\" or \"poses\"",
             ("rod", Some("section")) => "\"circle\", \"rectangle\" or \"custom\"",
             ("rod", Some("reference")) => "\"nodes\" or \"fit\"",
+            ("body", Some("shape")) => "\"cylinder\", \"cuboid\" or \"sphere\"",
             ("joint", _) => "\"rigid\", \"spherical\" or \"revolute\"",
             ("load", _) => "\"force\", \"moment\", \"line_force\" or \"line_moment\"",
             _ => return None,
@@ -276,6 +278,12 @@ fn describe(path: &[String]) -> Option<&'static str> {
         "pitch" => "a number, the rise per coil [m]",
         "phase" => "an angle [rad]",
         "file" => "the path of a CSV file, in quotes",
+        "shape" => "a table such as `{ kind = \"sphere\", radius = 0.1 }`",
+        "size" => "three positive edges `[x, y, z]` [m]",
+        "mass" => "a positive mass [kg]",
+        "position" => "the centre of mass `[x, y, z]` [m]",
+        "velocity" => "a velocity `[x, y, z]` [m/s]",
+        "angular_velocity" => "an angular velocity `[x, y, z]` [rad/s]",
         "from" | "to" | "origin" | "offset" | "point" => "a vector `[x, y, z]` [m]",
         "normal" | "axis" => "a direction `[x, y, z]`",
         "orientation" => "a quaternion `[w, x, y, z]`",
@@ -290,19 +298,27 @@ fn describe(path: &[String]) -> Option<&'static str> {
         "density" => "a positive density [kg/m³]",
         "samples" => "a whole number of samples",
         "between" => "two parts in quotes, such as `[\"ground\", \"rod@0\"]`",
-        "on" if table == Some("load") => "the point \"rod@ξ\", or the rod's name for a line load",
-        "on" => "the point \"rod@ξ\"",
+        "on" if table == Some("load") => "the point \"rod@ξ\" or a body, or the rod's name for a line load",
+        "on" => "the point \"rod@ξ\" or a body",
         "value" => "a vector `[x, y, z]` [N, N m, N/m or N m/m, by kind]",
         "basis" => "\"inertial\" or \"body\"",
         "time" => "\"ramp\", \"constant\" or rows `[[t, factor], …]`",
         "angles" => "\"zyx\"",
         "increments" => "a whole number of increments, at least 1",
+        "tolerance" if table == Some("dynamics") => "a positive number [N, N m; m, rad for joints]",
         "tolerance" => "a positive number [N, N m]",
+        "end_time" => "a positive time [s]",
+        "time_step" => "a positive time step [s]",
+        "method" => "\"generalized-alpha\" or \"radau\"",
+        "spectral_radius" => "a number from 0 to 1",
+        "count" => "a whole number of modes, at least 1",
         "newton" => "\"mixed\" or \"displacement\"",
         "max_iterations" => "a whole number of iterations, at least 1",
         "coordinates" => "\"increments\" or \"quaternions\"",
         "slope" => "a number [N/m]",
         "statics" if path.len() == 1 => "a table `[statics]`",
+        "dynamics" if path.len() == 1 => "a table `[dynamics]`",
+        "modes" if path.len() == 1 => "a table `[modes]`",
         "plot" if path.len() == 1 => "a table `[plot]`",
         _ => return None,
     })

@@ -57,9 +57,17 @@ pub(super) fn known(key: &str, name: &str, names: &[String], suffix: &str) -> Ch
         key,
         format!("is {written:?}, but no rod has the name {name:?}{hint}"),
         match names.len() {
-            1 => format!("the rod {}", one_of(names, '"')),
-            2..=8 => format!("one of the rods {}", one_of(names, '"')),
-            count => format!("one of the {count} rods"),
+            0 => "a rod, but the scene has none".into(),
+            _ => listed(names, "the rod", "rods"),
         },
     )
+}
+
+/// "the rod …", "one of the rods …" or, of many, only their number.
+pub(super) fn listed(names: &[String], one: &str, many: &str) -> String {
+    match names.len() {
+        1 => format!("{one} {}", one_of(names, '"')),
+        2..=8 => format!("one of the {many} {}", one_of(names, '"')),
+        count => format!("one of the {count} {many}"),
+    }
 }

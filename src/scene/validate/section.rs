@@ -1,28 +1,50 @@
 //! The cross-section of a rod and its material.
 
 use super::check::{Check, fail, finite_number, positive};
-use crate::scene::{Material, Rod, Section};
+use crate::scene::{Analysis, Material, Rod, Scene, Section};
 
 const MODULUS: &str = "a positive modulus [Pa]";
 const DENSITY: &str = "a positive density [kg/m³]";
 const POISSON_RANGE: &str = "a Poisson's ratio above -1 and up to 0.5";
 
-/// What weight needs: a mass per length, given or from the density.
-pub(super) fn weight(rod: &Rod, key: &str) -> Check {
-    let (missing, entry, unit) = match (&rod.section, &rod.material) {
-        (Section::Custom { mass_per_length, .. }, _) => {
-            (mass_per_length.is_none(), "section.mass_per_length", "the mass per length [kg/m]")
-        }
-        (_, Some(material)) => (material.density.is_none(), "material.density", "the density [kg/m³]"),
-        (_, None) => (true, "material", "the material with its density [kg/m³]"),
+/// What weight needs, and inertia in dynamics and modes: a mass per length, given or from the density.
+pub(super) fn mass(scene: &Scene, rod: &Rod, key: &str) -> Check {
+    let weighs = rod.gravity && scene.gravity.is_some_and(|gravity| gravity != [0.0; 3]);
+    let moves = match scene.analysis() {
+        Some(Analysis::Dynamics(_)) if rod.inertia => Some("dynamics"),
+        Some(Analysis::Modes(_)) if rod.inertia => Some("modes"),
+        _ => None,
     };
-    if !missing {
+    let missing = match (&rod.section, &rod.material) {
+        (Section::Custom { mass_per_length: None, .. }, _) => {
+            Some(("section.mass_per_length", "the mass per length [kg/m]"))
+        }
+        (Section::Custom { rotary_inertia: None, .. }, _) if moves.is_some() => {
+            Some(("section.rotary_inertia", "the rotary inertia per length `[xx, yy, zz]` [kg m]"))
+        }
+        (Section::Custom { .. }, _) => None,
+        (_, Some(material)) if material.density.is_some() => None,
+        (_, Some(_)) => Some(("material.density", "the density [kg/m³]")),
+        (_, None) => Some(("material", "the material with its density [kg/m³]")),
+    };
+    let Some((entry, expected)) = missing else {
         return Ok(());
-    }
+    };
+    // The rotary inertia has no weight.
+    let weighs = weighs && entry != "section.rotary_inertia";
+    let (reason, without) = match (moves, weighs) {
+        (None, false) => return Ok(()),
+        (None, true) => ("takes part in gravity".to_owned(), "`gravity = false`"),
+        (Some(analysis), false) => (format!("has inertia in {analysis}"), "`inertia = false`"),
+        (Some(analysis), true) => (
+            format!("has inertia in {analysis} and takes part in gravity"),
+            "`inertia = false` and `gravity = false`",
+        ),
+    };
     fail(
         format!("{key}.{entry}"),
-        "is missing, but the rod takes part in gravity",
-        format!("{unit}, or `gravity = false` for this rod"),
+        format!("is missing, but the rod {reason}"),
+        format!("{expected}, or {without} for this rod"),
     )
 }
 

@@ -1,0 +1,201 @@
+//! The first-order generalized-α method (Jansen, Whiting & Hulbert 2000; for constraints at position level in the form
+//! of Arnold & Brüls 2007), on positions and velocities alike.
+//!
+//! ```text
+//! (1 − α_m) a₊ + α_m a = (1 − α_f) ẏ₊ + α_f ẏ,   y₊ = y + h [(1 − γ) a + γ a₊],   y = q and y = u
+//! α_m = (3ρ − 1)/(2 (1 + ρ)),  α_f = ρ/(1 + ρ),  γ = ½ + α_f − α_m,  ρ the spectral radius at infinity
+//! ```
+//!
+//! with q̇ = B(q) u, and equilibrium and g(q₊) = 0 at the new time. With b = h γ (1 − α_f)/(1 − α_m) and
+//! y* = y + h (1 − γ) a + h γ (α_f ẏ − α_m a)/(1 − α_m), both known before the step,
+//!
+//! ```text
+//! u₊ = u* + b u̇₊,   r₊ = r* + b v₊,   P₊ = P* + b Q(P₊) ω₊  ⇒  P₊ = P* ∘ (1, y)/(1 + |y|²),  y = b ω₊/2
+//! ```
+//!
+//! so that accelerations and multipliers are the unknowns, and the step's equations are
+//! [[M + b D + b² K, −Gᵀ], [G, 0]] for the increments (δr, δφ) = b² diag(1, Y) δu̇ and b² δλ: well conditioned as
+//! h → 0. P₊ keeps no norm by itself; after the step it is normalised and its part of a scaled by the same factor:
+//! (10) is linear in P, so this turns nothing.
+
+use nalgebra::{Vector3, Vector4};
+
+use super::{Moving, level};
+use crate::assembly::Residual;
+use crate::inertia::{Velocity, spin_from_turn};
+use crate::newton::{Converged, Equations, Newton, NotConverged};
+use crate::rod::StepVelocity;
+use crate::rotation::{quaternion_product, quaternion_rate};
+use crate::scene::NewtonKind;
+use crate::solution::{Statistics, StopReason};
+
+/// A node's part of y: (r, P) and (v, ω), or one of its rates.
+#[derive(Clone, Copy, Debug)]
+struct Coordinates {
+    position: Vector3<f64>,
+    quaternion: Vector4<f64>,
+    velocity: Velocity,
+}
+
+impl Coordinates {
+    /// Σ c_k y_k.
+    fn combine<const K: usize>(terms: [(f64, &Self); K]) -> Self {
+        let mut sum = Self {
+            position: Vector3::zeros(),
+            quaternion: Vector4::zeros(),
+            velocity: Velocity::default(),
+        };
+        for (factor, term) in terms {
+            sum.position += term.position * factor;
+            sum.quaternion += term.quaternion * factor;
+            sum.velocity.translation += term.velocity.translation * factor;
+            sum.velocity.rotation += term.velocity.rotation * factor;
+        }
+        sum
+    }
+}
+
+/// The method with its memory.
+pub struct GeneralizedAlpha {
+    alpha_m: f64,
+    alpha_f: f64,
+    gamma: f64,
+    /// a of every node.
+    averages: Vec<Coordinates>,
+    /// ẏ at the start of the step, and y*.
+    rates: Vec<Coordinates>,
+    known: Vec<Coordinates>,
+}
+
+impl GeneralizedAlpha {
+    /// From a consistent start: a = ẏ.
+    pub fn new(spectral_radius: f64, start: &Moving) -> Self {
+        let rho = spectral_radius;
+        let (alpha_m, alpha_f) = ((3.0 * rho - 1.0) / (2.0 * (1.0 + rho)), rho / (1.0 + rho));
+        let rates = rates(start);
+        Self {
+            alpha_m,
+            alpha_f,
+            gamma: 0.5 + alpha_f - alpha_m,
+            averages: rates.clone(),
+            known: rates.clone(),
+            rates,
+        }
+    }
+
+    /// Moves on by `length` to `time`.
+    pub fn step(
+        &mut self,
+        moving: &mut Moving,
+        time: f64,
+        length: f64,
+        newton: &Newton,
+        statistics: &mut Statistics,
+    ) -> Result<Converged, NotConverged> {
+        let Self { alpha_m, alpha_f, gamma, .. } = *self;
+        let weight = length * gamma / (1.0 - alpha_m);
+        let b = weight * (1.0 - alpha_f);
+        self.rates = rates(moving);
+        let now = coordinates(moving);
+        for (((known, y), rate), a) in
+            self.known.iter_mut().zip(&now).zip(&self.rates).zip(&self.averages)
+        {
+            let of_average = length * (1.0 - gamma) - weight * alpha_m;
+            *known = Coordinates::combine([(1.0, y), (of_average, a), (weight * alpha_f, rate)]);
+        }
+        let mut step = Step { moving, known: &self.known, time, length, b };
+        let converged = newton.solve(&mut step, statistics)?;
+
+        let after = rates(moving);
+        for (((a, before), after), node) in self.averages.iter_mut().zip(&self.rates).zip(&after).zip(0..) {
+            let scale = 1.0 / (1.0 - alpha_m);
+            *a = Coordinates::combine([
+                ((1.0 - alpha_f) * scale, after),
+                (alpha_f * scale, before),
+                (-alpha_m * scale, a),
+            ]);
+            a.quaternion /= moving.state.quaternions()[node].norm();
+        }
+        moving.state.normalize();
+        Ok(converged)
+    }
+}
+
+/// y.
+fn coordinates(moving: &Moving) -> Vec<Coordinates> {
+    let nodes = moving.state.poses().iter().zip(moving.state.quaternions()).zip(&moving.motion.velocities);
+    nodes
+        .map(|((pose, quaternion), velocity)| Coordinates {
+            position: pose.position,
+            quaternion: *quaternion,
+            velocity: *velocity,
+        })
+        .collect()
+}
+
+/// ẏ = (B(q) u, u̇).
+fn rates(moving: &Moving) -> Vec<Coordinates> {
+    let motion = &moving.motion;
+    let nodes = moving.state.quaternions().iter().zip(&motion.velocities).zip(&motion.accelerations);
+    nodes
+        .map(|((quaternion, velocity), acceleration)| Coordinates {
+            position: velocity.translation,
+            quaternion: quaternion_rate(quaternion) * velocity.rotation,
+            velocity: *acceleration,
+        })
+        .collect()
+}
+
+/// The equations of one step; the iterate is u̇₊ with λ₊, everything else follows.
+struct Step<'a, 'm> {
+    moving: &'a mut Moving<'m>,
+    known: &'a [Coordinates],
+    time: f64,
+    length: f64,
+    b: f64,
+}
+
+impl Equations for Step<'_, '_> {
+    fn evaluate(&mut self) -> Result<Residual, StopReason> {
+        let (b, h) = (self.b, self.length);
+        let Moving { model, state, motion, work } = &mut *self.moving;
+        // How far nodes and bodies go in the step, for the test of the joints.
+        let mut travel = (0.0_f64, 0.0_f64);
+        for (node, known) in self.known.iter().enumerate() {
+            let (u, rate) = (&mut motion.velocities[node], &motion.accelerations[node]);
+            u.translation = known.velocity.translation + rate.translation * b;
+            u.rotation = known.velocity.rotation + rate.rotation * b;
+            state.set_position(node, known.position + u.translation * b);
+            let y = u.rotation * (0.5 * b);
+            let turn = Vector4::new(1.0, y.x, y.y, y.z) / (1.0 + y.norm_squared());
+            state.set_quaternion(node, quaternion_product(&known.quaternion, &turn));
+            travel.0 = travel.0.max(h * (u.translation.amax() + h * rate.translation.amax()));
+            travel.1 = travel.1.max(h * (u.rotation.amax() + h * rate.rotation.amax()));
+        }
+        work.evaluate(model, state, &level(self.time), Some(motion))?;
+        Ok(work.residual(model, state, travel))
+    }
+
+    fn step(&mut self, kind: NewtonKind) -> Result<(), StopReason> {
+        let b = self.b;
+        let Moving { model, state, motion, work } = &mut *self.moving;
+        if kind == NewtonKind::Displacement {
+            work.reset_stresses();
+        }
+        let step = StepVelocity { velocities: &motion.velocities, b };
+        work.factorize(model, state, &level(self.time), Some(&step))?;
+        work.solve(model, state, b * b)?;
+        if kind == NewtonKind::Mixed {
+            work.advance_stresses(model, state)?;
+        }
+        for (node, increment) in work.increments.iter().enumerate() {
+            let turn = spin_from_turn(&motion.velocities[node].rotation, b);
+            let rate = &mut motion.accelerations[node];
+            rate.translation += increment.translation / (b * b);
+            rate.rotation += turn * increment.rotation / (b * b);
+        }
+        let multipliers = state.multipliers_mut().iter_mut().zip(&work.multiplier_increments);
+        multipliers.for_each(|(multiplier, increment)| *multiplier += increment);
+        Ok(())
+    }
+}

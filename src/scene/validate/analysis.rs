@@ -1,0 +1,122 @@
+//! The analysis: exactly one, its settings, and what they ask of the rest of the scene.
+
+use super::check::{Check, MOST, at_least_one, fail, finite_number, positive};
+use crate::scene::{Analysis, Coordinates, Dynamics, Method, Modes, Scene, Statics};
+
+const TABLES: [&str; 3] = ["statics", "dynamics", "modes"];
+
+/// Exactly one of `[statics]`, `[dynamics]` and `[modes]`, given which of them there are.
+pub(in crate::scene) fn one_analysis(present: [bool; 3]) -> Check {
+    let mut given = TABLES.iter().zip(present).filter(|(_, present)| *present).map(|(table, _)| *table);
+    match (given.next(), given.next()) {
+        (None, _) => fail(
+            "statics",
+            "is missing, so the scene asks for nothing",
+            "one of the tables `[statics]`, which may be empty, `[dynamics]` and `[modes]`",
+        ),
+        (Some(_), None) => Ok(()),
+        (Some(first), Some(second)) => fail(
+            second,
+            format!("is given beside `[{first}]`"),
+            "only one of `[statics]`, `[dynamics]` and `[modes]`",
+        ),
+    }
+}
+
+pub(super) fn analysis(scene: &Scene) -> Check {
+    match scene.analysis() {
+        Some(Analysis::Statics(options)) => statics(scene, options),
+        Some(Analysis::Dynamics(options)) => dynamics(scene, options),
+        Some(Analysis::Modes(options)) => modes(options),
+        None => Ok(()),
+    }
+}
+
+fn statics(scene: &Scene, options: &Statics) -> Check {
+    if let Some(increments) = options.increments {
+        at_least_one("statics.increments", increments, "increments")?;
+    }
+    if let Some(tolerance) = options.tolerance {
+        positive("statics.tolerance", tolerance, "a positive tolerance [N, N m]")?;
+    }
+    at_least_one("statics.max_iterations", options.max_iterations, "iterations")?;
+    if options.coordinates == Coordinates::Increments {
+        return Ok(());
+    }
+    let what = match (scene.body.first(), first_multiplied(scene)) {
+        (Some(body), _) => format!("bodies, such as {:?}", body.name),
+        (None, Some(joint)) => format!("joints that need multipliers, such as {joint:?}"),
+        (None, None) => return Ok(()),
+    };
+    fail(
+        "statics.coordinates",
+        format!("is \"quaternions\", which is not available yet for {what}"),
+        "\"increments\"",
+    )
+}
+
+fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
+    positive("dynamics.end_time", options.end_time, "a positive time [s]")?;
+    positive("dynamics.time_step", options.time_step, "a positive time step [s]")?;
+    let (end_time, time_step) = (finite_number(options.end_time), finite_number(options.time_step));
+    if options.time_step > options.end_time {
+        return fail(
+            "dynamics.time_step",
+            format!("is {time_step}, longer than the whole motion"),
+            format!("at most the end time, {end_time} [s]"),
+        );
+    }
+    let steps = options.end_time / options.time_step;
+    if steps > MOST as f64 {
+        return fail(
+            "dynamics.time_step",
+            format!("is {time_step}, which makes {steps:.3e} steps up to the end time"),
+            format!("a time step that makes at most {MOST} steps"),
+        );
+    }
+    if let Some(tolerance) = options.tolerance {
+        positive("dynamics.tolerance", tolerance, "a positive tolerance [N, N m; m, rad for joints]")?;
+    }
+    at_least_one("dynamics.max_iterations", options.max_iterations, "iterations")?;
+    spectral_radius(scene, options)?;
+    if options.method != Method::Radau {
+        return Ok(());
+    }
+    match scene.rod.iter().position(|rod| !rod.inertia) {
+        None => Ok(()),
+        Some(index) => fail(
+            format!("rod.{index}.inertia"),
+            "is false, but the method \"radau\" needs inertia of every rod",
+            "true, or the method \"generalized-alpha\"",
+        ),
+    }
+}
+
+/// In [0, 1]; 1 only without position-level constraints, whose multipliers it would let grow.
+fn spectral_radius(scene: &Scene, options: &Dynamics) -> Check {
+    let radius = options.spectral_radius;
+    let key = "dynamics.spectral_radius";
+    if !(0.0..=1.0).contains(&radius) {
+        return fail(key, format!("is {}", finite_number(radius)), "a spectral radius from 0 to 1");
+    }
+    if radius < 1.0 || options.method != Method::GeneralizedAlpha {
+        return Ok(());
+    }
+    match first_multiplied(scene) {
+        None => Ok(()),
+        Some(joint) => fail(
+            key,
+            format!("is 1, which lets the forces of joints such as {joint:?} grow from step to step"),
+            "a spectral radius from 0 to below 1, or only rods clamped to the ground and free bodies",
+        ),
+    }
+}
+
+fn first_multiplied(scene: &Scene) -> Option<String> {
+    let index = (0..scene.joint.len()).find(|&index| scene.multiplied(index))?;
+    Some(scene.joint_name(index))
+}
+
+fn modes(options: &Modes) -> Check {
+    at_least_one("modes.count", options.count, "modes")
+}
