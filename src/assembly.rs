@@ -237,6 +237,21 @@ impl Workspace {
         Ok(())
     }
 
+    /// f = −M u̇ − fᵍʸʳ(u) alone.
+    pub fn inertia_forces(&mut self, model: &Model, motion: &Motion) {
+        self.forces.clear();
+        for rod in &model.rods {
+            let (range, first) = (rod.range.clone(), rod.range.start);
+            let (u, a) = (&motion.velocities[range.clone()], &motion.accelerations[range]);
+            rod.kernel.add_inertia(&rod.properties, u, a, first, &mut self.forces);
+        }
+        for body in &model.bodies {
+            let (u, a) = (&motion.velocities[body.node], &motion.accelerations[body.node]);
+            let (force, moment) = body.mass.inertia_force(u, a);
+            self.forces.add(body.node, &force, &moment);
+        }
+    }
+
     /// The residual of what was evaluated last; NaN if a number overflowed. `travel` is what joints may be off by,
     /// (displacement [m], rotation [rad]) times τ.
     pub fn residual(&self, model: &Model, state: &State, travel: (f64, f64)) -> Residual {

@@ -95,6 +95,7 @@ pub mod lagrange;
 pub mod linear_solver;
 pub mod load;
 pub mod model;
+pub mod modes;
 pub mod newton;
 pub mod output;
 pub mod quadrature;

@@ -3,11 +3,13 @@
 mod chain;
 mod coupled;
 mod dense;
+mod eigen;
 mod sparse;
 
 pub use chain::Chain;
 pub use coupled::Coupled;
 pub use dense::Dense;
+pub use eigen::eigenpairs;
 pub use sparse::Sparse;
 
 use thiserror::Error;

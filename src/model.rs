@@ -229,6 +229,11 @@ impl Model {
         &self.reference
     }
 
+    /// Whether anything is loaded at all.
+    pub(crate) fn loaded(&self) -> bool {
+        self.courses().next().is_some()
+    }
+
     /// Whether any load acts at load factor 0 already.
     pub(crate) fn loaded_at_start(&self) -> bool {
         self.courses().any(|course| course.factor(0.0) != 0.0)

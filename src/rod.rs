@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use nalgebra::{Matrix6, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 
 use crate::element::{
     ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, advance_stress,
@@ -231,6 +231,14 @@ pub trait RodElements: Debug + Send + Sync {
     /// The pose at ξ ∈ [0, 1].
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn>;
 
+    /// At ξ ∈ [0, 1] the rotation, and δr (inertial) and δφ (body basis) for given increments of the nodes.
+    fn pose_increment(
+        &self,
+        poses: &[Pose],
+        increments: &[Increment],
+        xi: f64,
+    ) -> Result<(Matrix3<f64>, Increment), HalfTurn>;
+
     /// The element with the smallest det A at a quadrature point, and that determinant: 1 for a rotation, less
     /// where the interpolated matrix has shrunk because the nodes are turned far against each other.
     fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64);
@@ -331,6 +339,12 @@ where
 
     pub(crate) fn count(&self) -> usize {
         self.elements
+    }
+
+    /// The node of the rod that lies at x of element e.
+    fn node_at(&self, e: usize, x: f64) -> Option<usize> {
+        let near = |node: &f64| (node - x).abs() <= NODE_TOLERANCE * self.elements as f64;
+        Some(e * (N - 1) + self.nodes.iter().position(near)?)
     }
 
     /// J at the full rule's points of element e and m_ij.
@@ -609,12 +623,30 @@ where
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn> {
         let (e, x) = self.locate(xi);
         // At a node the pose is the node's own, to the last digit.
-        if let Some(i) =
-            self.nodes.iter().position(|node| (node - x).abs() <= NODE_TOLERANCE * self.elements as f64)
-        {
-            return Ok(poses[e * (N - 1) + i]);
+        match self.node_at(e, x) {
+            Some(node) => Ok(poses[node]),
+            None => I::pose(self.of(e, poses), &self.basis_at(x)),
         }
-        I::pose(self.of(e, poses), &self.basis_at(x))
+    }
+
+    fn pose_increment(
+        &self,
+        poses: &[Pose],
+        increments: &[Increment],
+        xi: f64,
+    ) -> Result<(Matrix3<f64>, Increment), HalfTurn> {
+        let (e, x) = self.locate(xi);
+        if let Some(node) = self.node_at(e, x) {
+            return Ok((poses[node].rotation, increments[node]));
+        }
+        let d = I::pose_derivative(self.of(e, poses), &self.basis_at(x))?;
+        let mut sum = Increment::default();
+        for (j, increment) in self.of(e, increments).iter().enumerate() {
+            sum.translation += d.position_translation[j] * increment.translation
+                + d.position_rotation[j] * increment.rotation;
+            sum.rotation += d.rotation_rotation[j] * increment.rotation;
+        }
+        Ok((d.pose.rotation, sum))
     }
 
     fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64) {

@@ -16,11 +16,21 @@ pub fn solve(
     options: &Statics,
     progress: &mut dyn FnMut(f64, &Statistics),
 ) -> Result<Solution, Box<SolveFailure>> {
+    equilibrium(model, options, progress).map(|(solution, _)| solution)
+}
+
+/// The same with the state at load factor 1.
+pub(crate) fn equilibrium(
+    model: &Model,
+    options: &Statics,
+    progress: &mut dyn FnMut(f64, &Statistics),
+) -> Result<(Solution, State), Box<SolveFailure>> {
     let mut path = Path::new(model, options, progress);
     let outcome = path.follow(options.increments);
-    let solution = path.recorder.finish(model, &path.last.state, path.statistics);
+    let state = path.last.state;
+    let solution = path.recorder.finish(model, &state, path.statistics);
     match outcome {
-        Ok(()) => Ok(solution),
+        Ok(()) => Ok((solution, state)),
         Err(error) => Err(Box::new(SolveFailure { error, partial: solution })),
     }
 }

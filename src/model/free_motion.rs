@@ -12,11 +12,10 @@ use crate::scene::{Analysis, Scene};
 /// Refuses what can move without strain and without inertia: in statics any part, in dynamics a rod without mass.
 /// Modes need an equilibrium first, if anything is loaded.
 pub fn refuse(model: &Model, scene: &Scene) -> Result<(), SceneError> {
-    let loaded = model.courses().next().is_some();
     let parts = parts(model);
     let (moving, why): (Vec<bool>, _) = match scene.analysis() {
         Some(Analysis::Dynamics(_)) => (parts.iter().map(|part| part.massless).collect(), "without inertia"),
-        Some(Analysis::Modes(_)) if !loaded => {
+        Some(Analysis::Modes(_)) if !model.loaded() => {
             (parts.iter().map(|part| part.massless).collect(), "without inertia")
         }
         _ => (vec![true; parts.len()], "without strain"),
