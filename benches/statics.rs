@@ -33,10 +33,10 @@ fn iteration(criterion: &mut Criterion) {
     let level = LoadLevel { load_factor: 1e-3, preload: 1.0 };
     criterion.bench_function("spring/iteration", |bencher| {
         bencher.iter(|| {
-            work.evaluate(&model, &state, &level).expect("regular");
-            black_box(work.residual(&model, &state));
-            work.factorize(&model, &state, &level).expect("regular");
-            work.solve(&model, &state).expect("regular");
+            work.evaluate(&model, &state, &level, None).expect("regular");
+            black_box(work.residual(&model, &state, (1.0, 1.0), None));
+            work.factorize(&model, &state, &level, None).expect("regular");
+            work.solve(&model, &state, 1.0).expect("regular");
             work.advance_stresses(&model, &state).expect("regular");
             work.reset_stresses();
         });

@@ -4,11 +4,11 @@ use nalgebra::{Matrix6, Vector3, Vector4, Vector6};
 
 use crate::element::{LineLoad, Stress};
 use crate::fit::increment_of;
-use crate::interpolation::{Increment, Pose};
 use crate::inertia::Velocity;
+use crate::interpolation::{Increment, Pose};
 use crate::linear_solver::{Chain, Coupled, NODE, Singular, Sparse};
 use crate::load::Course;
-use crate::model::{Model, RodModel};
+use crate::model::{BodyModel, Model, RodModel};
 use crate::rod::{Applied, NodalForces, QUATERNION_NODE, StepVelocity, TangentError, Target};
 use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::Coordinates;
@@ -253,8 +253,14 @@ impl Workspace {
     }
 
     /// The residual of what was evaluated last; NaN if a number overflowed. `travel` is what joints may be off by,
-    /// (displacement [m], rotation [rad]) times τ.
-    pub fn residual(&self, model: &Model, state: &State, travel: (f64, f64)) -> Residual {
+    /// (displacement [m], rotation [rad]) times τ; `step` is given in a time step.
+    pub fn residual(
+        &self,
+        model: &Model,
+        state: &State,
+        travel: (f64, f64),
+        step: Option<&StepVelocity>,
+    ) -> Residual {
         let mut result = Residual::default();
         if let LinearSystem::Quaternions(_) = self.system {
             // Eq. (17), a pure number in either test.
@@ -286,11 +292,13 @@ impl Workspace {
         for body in &model.bodies {
             let forces = &self.forces;
             let scales = (forces.force_scale[body.node], forces.moment_scale[body.node]);
-            // A moment may vanish to rounding where a force has a lever.
-            let floor = 8.0 * f64::EPSILON * scales.0 * body.reach / RELATIVE_TOLERANCE;
-            let (force, moment) =
-                (max_norm(&forces.force[body.node]), max_norm(&forces.moment[body.node]));
-            add(force, moment, (scales.0, scales.1 + floor));
+            let floor = body_floor(body, scales.0, step);
+            let (force, moment) = (max_norm(&forces.force[body.node]), max_norm(&forces.moment[body.node]));
+            add(
+                force,
+                moment,
+                (scales.0 + floor.0 / RELATIVE_TOLERANCE, scales.1 + floor.1 / RELATIVE_TOLERANCE),
+            );
         }
         for (coupling, gap) in model.couplings.iter().zip(&self.gaps) {
             let reach = coupling.poses(state).iter().map(|pose| pose.position.amax()).fold(0.0, f64::max);
@@ -329,10 +337,8 @@ impl Workspace {
                 tangents: &work.load_tangents,
                 supports: &rod.supports,
                 force: &self.forces.force[rod.range.clone()],
-                step: step.map(|step| StepVelocity {
-                    velocities: &step.velocities[rod.range.clone()],
-                    b: step.b,
-                }),
+                step: step
+                    .map(|step| StepVelocity { velocities: &step.velocities[rod.range.clone()], b: step.b }),
             };
             let mut target = match &mut self.system {
                 LinearSystem::Chains(system) => Target::Chain(&mut system.chains[index]),
@@ -592,6 +598,18 @@ fn ratio(a: f64, b: f64) -> f64 {
     } else {
         a / b
     }
+}
+
+/// (F₀, M₀) of a body: a moment may vanish to rounding where a force has a lever, and an acceleration is known to
+/// ε |u|/b, where u stands for the speeds of the whole body: one that only spins has no velocity to compare with.
+fn body_floor(body: &BodyModel, force_scale: f64, step: Option<&StepVelocity>) -> (f64, f64) {
+    let noise = 8.0 * f64::EPSILON;
+    let lever = noise * force_scale * body.reach;
+    let Some(step) = step else { return (0.0, lever) };
+    let (u, inertia) = (&step.velocities[body.node], body.mass.inertia.max());
+    let size = (inertia / body.mass.mass).sqrt();
+    let speed = u.translation.norm() + u.rotation.norm() * size;
+    (noise * body.mass.mass * speed / step.b, lever + noise * inertia * speed / (size * step.b))
 }
 
 /// (F + F₀/τ, M + M₀/τ): the largest nodal sums of absolute contributions, and the rounding floors.

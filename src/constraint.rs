@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The offset o makes g = 0 at the start: positions may be kept relative to another origin for each part. The rows of
-//! rotation see no difference between R and its half turn; a step from one to the other is none a solver makes.
+//! rotation vanish half a turn away, too; no step of a solver is that long.
 //!
 //! With the rotations ψ = Jᵀ δφ in the joint's basis every derivative follows from δR = R ψ̃_b − ψ̃_a R and
 //! j⁻¹(Skw(φ̃ M)) = ½ ((tr M) 1 − M) φ, and with Ṙ alike, R̈ at rest accelerations is
@@ -19,7 +19,7 @@
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use crate::inertia::Velocity;
-use crate::interpolation::Pose;
+use crate::interpolation::{Pose, half_trace_minus};
 use crate::rotation::{axial, direction, skew};
 use crate::scene::JointKind;
 
@@ -41,12 +41,6 @@ fn basis_along(axis: &Vector3<f64>) -> Matrix3<f64> {
     let first = direction(axis);
     let second = direction(&first.cross(&Vector3::ith(first.iamin(), 1.0)));
     Matrix3::from_columns(&[first, second, first.cross(&second)])
-}
-
-/// ½ ((tr M) 1 − M).
-#[inline]
-fn half_trace_minus(m: &Matrix3<f64>) -> Matrix3<f64> {
-    Matrix3::from_diagonal_element(0.5 * m.trace()) - 0.5 * m
 }
 
 /// Writes a 3×3 matrix into a 6×6 one.

@@ -131,11 +131,9 @@ impl Run<'_> {
                 .step(&mut self.motion, time, length, &self.newton, &mut self.statistics)
                 .and_then(|converged| {
                     let Converged { iterations, residual } = converged;
-                    self.check_dependent().and_then(|()| self.record(time)).map_err(|reason| NotConverged {
-                        iterations,
-                        residual,
-                        reason,
-                    })?;
+                    self.check_dependent()
+                        .and_then(|()| self.record(time))
+                        .map_err(|reason| NotConverged { iterations, residual, reason })?;
                     Ok(converged)
                 })
                 .map_err(|stop| self.error(time, &stop))?;

@@ -34,7 +34,7 @@ pub enum Error {
     /// A file could not be read or written.
     #[error("cannot {action} {path}: {source}", path = .path.display())]
     File {
-        /// "read" or "write".
+        /// "read", "write" or "remove".
         action: &'static str,
         /// Which file.
         path: PathBuf,

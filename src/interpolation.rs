@@ -136,7 +136,7 @@ fn tangent_vector<const N: usize>(nodes: &[Pose; N], basis: &Basis<N>) -> Vector
 
 /// ½ ((tr M) 1 − M).
 #[inline]
-fn half_trace_minus(m: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn half_trace_minus(m: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal_element(0.5 * m.trace()) - 0.5 * m
 }
 

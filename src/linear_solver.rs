@@ -9,7 +9,7 @@ mod sparse;
 pub use chain::Chain;
 pub use coupled::Coupled;
 pub use dense::Dense;
-pub use eigen::eigenpairs;
+pub use eigen::{Eigenpair, eigenpairs};
 pub use sparse::Sparse;
 
 use thiserror::Error;
@@ -94,7 +94,8 @@ mod tests {
             sparse.factorize().expect("regular");
             let mut by_chain = b.clone();
             chain.forward(&mut by_chain);
-            let mut rest: Vec<f64> = kept.iter().flat_map(|&n| by_chain[NODE * n..][..NODE].to_vec()).collect();
+            let mut rest: Vec<f64> =
+                kept.iter().flat_map(|&n| by_chain[NODE * n..][..NODE].to_vec()).collect();
             coupled.solve(&mut rest).expect("regular");
             for (&node, part) in kept.iter().zip(rest.chunks_exact(NODE)) {
                 by_chain[NODE * node..][..NODE].copy_from_slice(part);

@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use clap::{Args, Parser, Subcommand};
 use cosserat::output::{self, Outcome};
-use cosserat::scene::{Scene, SceneFile};
-use cosserat::solution::{SolveError, Statistics};
-use cosserat::{Error, Model, statics};
+use cosserat::scene::{Analysis, Dynamics, Scene, SceneFile, Statics};
+use cosserat::solution::{Mode, Solution, SolveError, SolveFailure, Statistics};
+use cosserat::{Error, Model, dynamics, modes, statics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Slender rods: solves Cosserat rods described by a scene file.
+/// Slender rods: statics, dynamics and modes of Cosserat rods described by a scene file.
 ///
 /// Exit codes: 0 solved, 2 the command or the scene is wrong, 3 the solver stopped early,
 /// 4 a file could not be read or written.
@@ -26,7 +26,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Solve a scene and write the results into a folder.
+    /// Solve a scene and write the results into a folder
+    ///
+    /// What the scene asks for is solved: the static equilibrium with [statics], the motion in time with
+    /// [dynamics], small vibrations about the equilibrium with [modes]. The folder then holds probes.csv,
+    /// reactions.csv (with joints), energies.csv (dynamics), modes.csv (modes), plot.svg, scene.toml and
+    /// summary.json; tables of an earlier run that do not belong to this one are removed.
+    #[command(verbatim_doc_comment)]
     Run {
         #[command(flatten)]
         scene: SceneArguments,
@@ -132,17 +138,16 @@ fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Fail
     let start = Instant::now();
     let (scene, model) = load(arguments)?;
     output::prepare(&out)?;
-    let options = scene.statics.clone().unwrap_or_default();
     let setup_seconds = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
     let bar = progress_bar(quiet);
-    let mut progress = |load_factor: f64, work: &Statistics| {
-        // A position in thousandths of the load; the bar draws itself a few times a second at most.
-        bar.set_position((1000.0 * load_factor.clamp(0.0, 1.0)) as u64);
-        bar.set_message(format!("{} increments, {} iterations", work.increments, work.newton_iterations));
+    let mut progress = |done: f64, work: &Statistics| {
+        // A position in thousandths of the load or the time; the bar draws itself a few times a second at most.
+        bar.set_position((1000.0 * done.clamp(0.0, 1.0)) as u64);
+        bar.set_message(work_so_far(&scene, done, work));
     };
-    let (solution, failure) = match statics::solve(&model, &options, &mut progress) {
+    let (solution, failure) = match solve(&scene, &model, &mut progress) {
         Ok(solution) => (solution, None),
         Err(stopped) => (stopped.partial, Some(stopped.error)),
     };
@@ -156,19 +161,40 @@ fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Fail
         }
         return Err(error.into());
     }
-    report(&outcome);
+    report(&scene, &outcome);
     say(format_args!("results in {}", out.display()));
     outcome.failure.map_or(Ok(()), |error| Err(Failure::Stopped(error)))
 }
 
+fn solve(
+    scene: &Scene,
+    model: &Model,
+    progress: &mut dyn FnMut(f64, &Statistics),
+) -> Result<Solution, Box<SolveFailure>> {
+    match scene.analysis() {
+        Some(Analysis::Statics(options)) => statics::solve(model, options, progress),
+        Some(Analysis::Dynamics(options)) => dynamics::solve(model, options, progress),
+        Some(Analysis::Modes(options)) => modes::solve(model, options, progress),
+        None => statics::solve(model, &Statics::default(), progress),
+    }
+}
+
+/// Beside the bar; `done` is the load factor, or the fraction of the end time.
+fn work_so_far(scene: &Scene, done: f64, work: &Statistics) -> String {
+    let iterations = work.newton_iterations;
+    match scene.analysis() {
+        Some(Analysis::Dynamics(Dynamics { end_time, .. })) => {
+            let time = done * end_time;
+            format!("{time:.3} of {end_time} s, {} steps, {iterations} iterations", work.increments)
+        }
+        _ => format!("{} increments, {iterations} iterations", work.increments),
+    }
+}
+
 fn check(arguments: &SceneArguments) -> Result<(), Failure> {
     let (scene, model) = load(arguments)?;
-    for rod in model.rods() {
-        say(format_args!(
-            "rod {}: {} elements of degree {}, {} nodes, length {} m",
-            rod.name, rod.elements, rod.degree, rod.nodes, rod.length
-        ));
-    }
+    list_rods(&model);
+    list_bodies(&model);
     say(format_args!(
         "joints: {}, loads: {}, probes: {}, unknowns: {}",
         scene.joint.len(),
@@ -182,23 +208,98 @@ fn check(arguments: &SceneArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn report(outcome: &Outcome) {
+fn list_rods(model: &Model) {
+    for rod in model.rods() {
+        say(format_args!(
+            "rod {}: {} elements of degree {}, {} nodes, length {} m",
+            rod.name, rod.elements, rod.degree, rod.nodes, rod.length
+        ));
+    }
+}
+
+fn list_bodies(model: &Model) {
+    for body in model.bodies() {
+        let inertia = body.mass.inertia;
+        say(format_args!(
+            "body {}: mass {} kg, principal inertia {} {} {} kg m²",
+            body.name, body.mass.mass, inertia.x, inertia.y, inertia.z
+        ));
+    }
+}
+
+fn report(scene: &Scene, outcome: &Outcome) {
     let solution = &outcome.solution;
     let work = &solution.statistics;
     let status = match outcome.failure {
         None => "solved",
         Some(_) => "stopped early",
     };
+    let (parts, iterations) = match scene.analysis() {
+        Some(Analysis::Dynamics(_)) => ("steps", iterations_of_steps(work)),
+        _ => ("increments", format!("{} Newton iterations", work.newton_iterations)),
+    };
     say(format_args!(
-        "{status}: {} unknowns, {} increments ({} rejected), {} Newton iterations, {:.3} s",
+        "{status}: {} unknowns, {} {parts} ({} rejected), {iterations}, {:.3} s",
         solution.unknowns,
         work.increments,
         work.rejected,
-        work.newton_iterations,
         outcome.setup_seconds + outcome.solve_seconds
     ));
+    report_energy(solution);
+    report_modes(&solution.modes);
     for warning in &solution.warnings {
         say(format_args!("warning: {warning}"));
+    }
+}
+
+/// In all, mean and most; the mean with those of rejected steps, which are work too.
+fn iterations_of_steps(work: &Statistics) -> String {
+    let iterations = format!("{} Newton iterations", work.newton_iterations);
+    match work.increments {
+        0 => iterations,
+        steps => {
+            let mean = work.newton_iterations as f64 / steps as f64;
+            format!("{iterations} ({mean:.2} a step, {} at most)", work.most_iterations)
+        }
+    }
+}
+
+/// Nothing where no energies are recorded.
+fn report_energy(solution: &Solution) {
+    if let (Some(first), Some(last)) = (solution.energies.first(), solution.energies.last()) {
+        let (start, end) = (first.total(), last.total());
+        say(format_args!(
+            "total energy: {start:.6e} J at the start, {end:.6e} J at the end, drift {:.3e} J",
+            end - start
+        ));
+    }
+}
+
+/// Nothing where there are no modes.
+fn report_modes(modes: &[Mode]) {
+    if modes.is_empty() {
+        return;
+    }
+    say(format_args!("{:>4}  {:>14}  {:>14}", "mode", "f [Hz]", "ω [rad/s]"));
+    for (index, mode) in modes.iter().enumerate() {
+        let unstable = if mode.angular_frequency < 0.0 { "  unstable" } else { "" };
+        say(format_args!(
+            "{:>4}  {:>14}  {:>14}{unstable}",
+            index + 1,
+            seven_digits(mode.frequency()),
+            seven_digits(mode.angular_frequency)
+        ));
+    }
+}
+
+/// Fixed where that reads well, scientific elsewhere.
+fn seven_digits(number: f64) -> String {
+    let size = number.abs();
+    if (1e-3..1e6).contains(&size) {
+        let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
+        format!("{number:.decimals$}")
+    } else {
+        format!("{number:.6e}")
     }
 }
 

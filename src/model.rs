@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use nalgebra::{Vector3, Vector4};
 
-use crate::curve::PlacedCurve;
 use crate::body::MassProperties;
+use crate::curve::PlacedCurve;
 use crate::element::LineLoad;
 use crate::error::{Error, SceneError};
 use crate::inertia::Velocity;
@@ -300,7 +300,16 @@ impl Model {
             translation: Vector3::from(body.velocity),
             rotation: Vector3::from(body.angular_velocity),
         };
-        self.bodies.push(BodyModel { name: body.name.clone(), mass, origin, node, velocity, loads, weight, reach: 0.0 });
+        self.bodies.push(BodyModel {
+            name: body.name.clone(),
+            mass,
+            origin,
+            node,
+            velocity,
+            loads,
+            weight,
+            reach: 0.0,
+        });
         Ok(())
     }
 

@@ -60,9 +60,7 @@ pub fn solve(
             solution.modes = modes;
             Ok(solution)
         }
-        Err(reason) => {
-            Err(Box::new(SolveFailure { error: SolveError::Modes { reason }, partial: solution }))
-        }
+        Err(reason) => Err(Box::new(SolveFailure { error: SolveError::Modes { reason }, partial: solution })),
     }
 }
 
@@ -75,9 +73,7 @@ fn undeformed(model: &Model) -> Result<(Solution, State), Box<SolveFailure>> {
     let solution = recorder.finish(model, &state, Statistics::default());
     match recorded {
         Ok(()) => Ok((solution, state)),
-        Err(reason) => {
-            Err(Box::new(SolveFailure { error: SolveError::Modes { reason }, partial: solution }))
-        }
+        Err(reason) => Err(Box::new(SolveFailure { error: SolveError::Modes { reason }, partial: solution })),
     }
 }
 
@@ -155,8 +151,7 @@ fn report(
                 (-real).sqrt() / b
             ));
         }
-        let angular_frequency =
-            if real.abs() <= RIGID { 0.0 } else { real.abs().sqrt().copysign(real) / b };
+        let angular_frequency = if real.abs() <= RIGID { 0.0 } else { real.abs().sqrt().copysign(real) / b };
         modes.push(Mode { angular_frequency, shape: shape(model, state, &pair.vector) });
     }
     modes
@@ -239,8 +234,7 @@ impl Operator for ShiftInvert<'_> {
         }
         self.work.inertia_forces(self.model, &self.motion);
         let forces = self.work.forces.force.iter().zip(&self.work.forces.moment);
-        let mut product: Vec<f64> =
-            forces.flat_map(|(f, m)| [-f.x, -f.y, -f.z, -m.x, -m.y, -m.z]).collect();
+        let mut product: Vec<f64> = forces.flat_map(|(f, m)| [-f.x, -f.y, -f.z, -m.x, -m.y, -m.z]).collect();
         for rod in &self.model.rods {
             for support in &rod.supports {
                 product[NODE * (rod.range.start + support.node)..][..NODE].fill(0.0);

@@ -127,7 +127,7 @@ impl Equations for Equilibrium<'_> {
     fn evaluate(&mut self) -> Result<Residual, StopReason> {
         self.work.evaluate(self.model, self.state, &self.level, None)?;
         // Joints close to τ of the model's size, and of a radian.
-        Ok(self.work.residual(self.model, self.state, (self.model.size, 1.0)))
+        Ok(self.work.residual(self.model, self.state, (self.model.size, 1.0), None))
     }
 
     fn step(&mut self, kind: NewtonKind) -> Result<(), StopReason> {

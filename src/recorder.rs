@@ -106,17 +106,12 @@ fn reaction(
         JointModel::Coupled(coupling) => {
             let coupling = &model.couplings[coupling];
             let poses = coupling.poses(state);
-            let forces =
-                coupling.constraint.forces(poses[0], poses[1], &coupling.multipliers(state));
+            let forces = coupling.constraint.forces(poses[0], poses[1], &coupling.multipliers(state));
             // On the ground acts the opposite of what acts on the other part.
             let (part, sign) = if coupling.nodes[1].is_some() { (1, 1.0) } else { (0, -1.0) };
             let (force, moment) = (forces[part].fixed_rows::<3>(0), forces[part].fixed_rows::<3>(3));
-            let (f, m) = coupling.constraint.wrench(
-                part,
-                poses[part],
-                &force.into_owned(),
-                &moment.into_owned(),
-            );
+            let (f, m) =
+                coupling.constraint.wrench(part, poses[part], &force.into_owned(), &moment.into_owned());
             (f * sign, m * sign)
         }
     }

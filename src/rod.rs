@@ -170,12 +170,8 @@ pub trait RodElements: Debug + Send + Sync {
     fn weights(&self) -> Vec<f64>;
 
     /// The discrete reference at given poses, and what else is needed.
-    fn properties(
-        &self,
-        poses: &[Pose],
-        stiffness: Stiffness,
-        needs: &Needs,
-    ) -> Result<RodProperties, usize>;
+    fn properties(&self, poses: &[Pose], stiffness: Stiffness, needs: &Needs)
+    -> Result<RodProperties, usize>;
 
     /// Adds internal forces and line loads to the rows from the node `first` on; writes the constitutive stresses.
     fn add_forces(
@@ -452,8 +448,9 @@ where
         }
         if let Some(section) = needs.inertia {
             let jacobians = result.full_jacobians.chunks_exact(self.full_rule.len());
-            let coefficients = jacobians
-                .flat_map(|jacobians| mass_coefficients::<N>(&self.full_rule, jacobians).into_iter().flatten());
+            let coefficients = jacobians.flat_map(|jacobians| {
+                mass_coefficients::<N>(&self.full_rule, jacobians).into_iter().flatten()
+            });
             result.inertia = Some(RodInertia { section, coefficients: coefficients.collect() });
         }
         Ok(result)

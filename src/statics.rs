@@ -210,12 +210,8 @@ impl<'a> Path<'a> {
             self.predict(place, &mut state);
         }
         let newton = Newton { max_iterations, ..self.newton };
-        let mut equilibrium = Equilibrium {
-            model: self.model,
-            level: level(place),
-            state: &mut state,
-            work: &mut self.work,
-        };
+        let mut equilibrium =
+            Equilibrium { model: self.model, level: level(place), state: &mut state, work: &mut self.work };
         let converged = newton.solve(&mut equilibrium, &mut self.statistics)?;
         state.normalize();
         let Converged { iterations, residual } = converged;

@@ -219,3 +219,113 @@ pub fn external_force<D: Number>(
     };
     (0..places.len()).map(sum).collect()
 }
+
+/// Σ N_i y_i at x, eq. (9): (v, ω) or their rates.
+fn field<D: Number>(places: &[f64], nodal: &[Pair<D>], x: f64) -> Pair<D> {
+    let (mut v, mut omega) = (Vector3::zeros(), Vector3::zeros());
+    for (i, (nodal_v, nodal_omega)) in nodal.iter().enumerate() {
+        let value = D::from(shape(places, i, x).0);
+        v += nodal_v * value;
+        omega += nodal_omega * value;
+    }
+    (v, omega)
+}
+
+/// What a cross-section weighs: A_ρ0 and the diagonal of I_ρ0.
+pub type Weight = (f64, Vector3<f64>);
+
+/// −M_e u̇ − f_e^gyr(u), eq. (13) and (14) under one integral: the inertia of the fields (9) at every point of the rule.
+pub fn inertia_force<D: Number>(
+    places: &[f64],
+    rule: &[(f64, f64)],
+    jacobians: &[f64],
+    (mass, rotary): Weight,
+    velocities: &[Pair<D>],
+    accelerations: &[Pair<D>],
+) -> Rows<D> {
+    let inertia = Matrix3::from_diagonal(&lift::<D>(&rotary));
+    let loads: Vec<Pair<D>> = rule
+        .iter()
+        .map(|&(x, _)| {
+            let (_, omega) = field(places, velocities, x);
+            let (acceleration, spin) = field(places, accelerations, x);
+            let moment = inertia * spin + tilde(&omega) * inertia * omega;
+            (-acceleration * D::from(mass), -moment)
+        })
+        .collect();
+    external_force(places, rule, jacobians, &loads)
+}
+
+/// ∫ ½ (A_ρ0 v·v + ω·I_ρ0 ω) J dx of the fields (9).
+pub fn kinetic_energy(
+    places: &[f64],
+    rule: &[(f64, f64)],
+    jacobians: &[f64],
+    (mass, rotary): Weight,
+    velocities: &[Pair<f64>],
+) -> f64 {
+    let at = |(&(x, weight), &jacobian): (&(f64, f64), &f64)| {
+        let (v, omega) = field(places, velocities, x);
+        0.5 * weight * jacobian * (mass * v.dot(&v) + omega.dot(&(Matrix3::from_diagonal(&rotary) * omega)))
+    };
+    rule.iter().zip(jacobians).map(at).sum()
+}
+
+/// P ∘ (1, φ/2) = P + Q(P) φ, eq. (10): P turned by φ in its own basis, and stretched.
+pub fn turned<D: Number>(p: &Vector4<D>, phi: &Vector3<D>) -> Vector4<D> {
+    p + quaternion_rate(p, phi)
+}
+
+/// What a joint does not leave free.
+#[derive(Clone, Copy, Debug)]
+pub enum Held {
+    /// A point.
+    Point,
+    /// A point and the first of three directions e₁, e₂, e₃ given at the start.
+    Axis(Matrix3<f64>),
+    /// A point and every direction.
+    Everything,
+}
+
+/// A joint as it was fitted: both parts at the start, and its point among the positions of each.
+#[derive(Clone, Copy, Debug)]
+pub struct Fitted {
+    pub held: Held,
+    pub start: [Frame<f64>; 2],
+    pub points: [Vector3<f64>; 2],
+}
+
+impl Fitted {
+    /// What has moved apart since: points of the parts' material, and directions b_k in terms of the a_k.
+    ///
+    /// With the material directions a_k and b_k that were both e_k at the start, ½ B_aᵀ Σ a_k × b_k is the axial
+    /// vector of R = B_aᵀ B_b, for Σ e_k × ρ̃ e_k = 2ρ and Σ e_k × S e_k = 0 if S is symmetric.
+    pub fn gap<D: Number>(&self, now: &[Frame<D>; 2]) -> [D; 6] {
+        let moved = |part: usize| {
+            let (start, now) = (&self.start[part], &now[part]);
+            let turn = now.rotation * start.rotation.transpose().map(D::from);
+            let arm = lift::<D>(&(self.points[part] - start.position));
+            (now.position + turn * arm - lift(&self.points[part]), turn)
+        };
+        let ((from, a), (to, b)) = (moved(0), moved(1));
+        let apart = to - from;
+        let direction =
+            |turn: &Matrix3<D>, of: &Matrix3<f64>, k: usize| turn * lift(&of.column(k).into_owned());
+        let rows = match self.held {
+            Held::Point => Vector3::zeros(),
+            Held::Axis(basis) => {
+                let axis = direction(&b, &basis, 0);
+                let row = |k: usize| direction(&a, &basis, k).dot(&axis);
+                Vector3::new(row(1), row(2), D::from(0.0))
+            }
+            Held::Everything => {
+                let mut sum = Vector3::zeros();
+                for k in 0..3 {
+                    sum += a.column(k).cross(&b.column(k));
+                }
+                a.transpose() * sum * D::from(0.5)
+            }
+        };
+        [apart.x, apart.y, apart.z, rows.x, rows.y, rows.z]
+    }
+}

@@ -40,11 +40,8 @@ struct Coordinates {
 impl Coordinates {
     /// Σ c_k y_k.
     fn combine<const K: usize>(terms: [(f64, &Self); K]) -> Self {
-        let mut sum = Self {
-            position: Vector3::zeros(),
-            quaternion: Vector4::zeros(),
-            velocity: Velocity::default(),
-        };
+        let mut sum =
+            Self { position: Vector3::zeros(), quaternion: Vector4::zeros(), velocity: Velocity::default() };
         for (factor, term) in terms {
             sum.position += term.position * factor;
             sum.quaternion += term.quaternion * factor;
@@ -97,9 +94,7 @@ impl GeneralizedAlpha {
         let b = weight * (1.0 - alpha_f);
         self.rates = rates(moving);
         let now = coordinates(moving);
-        for (((known, y), rate), a) in
-            self.known.iter_mut().zip(&now).zip(&self.rates).zip(&self.averages)
-        {
+        for (((known, y), rate), a) in self.known.iter_mut().zip(&now).zip(&self.rates).zip(&self.averages) {
             let of_average = length * (1.0 - gamma) - weight * alpha_m;
             *known = Coordinates::combine([(1.0, y), (of_average, a), (weight * alpha_f, rate)]);
         }
@@ -173,7 +168,8 @@ impl Equations for Step<'_, '_> {
             travel.1 = travel.1.max(h * (u.rotation.amax() + h * rate.rotation.amax()));
         }
         work.evaluate(model, state, &level(self.time), Some(motion))?;
-        Ok(work.residual(model, state, travel))
+        let step = StepVelocity { velocities: &motion.velocities, b };
+        Ok(work.residual(model, state, travel, Some(&step)))
     }
 
     fn step(&mut self, kind: NewtonKind) -> Result<(), StopReason> {

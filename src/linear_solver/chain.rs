@@ -282,8 +282,7 @@ impl Chain {
                 }
             }
         } else {
-            for (row, left) in
-                rows[count * width..].chunks_exact(width).zip(self.left.chunks_exact_mut(rest))
+            for (row, left) in rows[count * width..].chunks_exact(width).zip(self.left.chunks_exact_mut(rest))
             {
                 left.copy_from_slice(&row[count..]);
             }

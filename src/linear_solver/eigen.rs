@@ -5,8 +5,11 @@ use nalgebra::Complex;
 
 use super::Singular;
 
+/// An eigenvalue with its right eigenvector.
+pub type Eigenpair = (Complex<f64>, Vec<Complex<f64>>);
+
 /// Eigenvalues with their right eigenvectors of a real n × n matrix, given row by row.
-pub fn eigenpairs(rows: &[Vec<f64>]) -> Result<Vec<(Complex<f64>, Vec<Complex<f64>>)>, Singular> {
+pub fn eigenpairs(rows: &[Vec<f64>]) -> Result<Vec<Eigenpair>, Singular> {
     let size = rows.len();
     if !rows.iter().flatten().all(|x| x.is_finite()) {
         return Err(Singular);

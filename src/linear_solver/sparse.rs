@@ -61,7 +61,8 @@ impl<T: ComplexField + Copy> Sparse<T> {
         let Pattern { matrix, order, factors } = self.pattern.insert(pattern);
         let values = SparseColMat::new_from_argsort(matrix.clone(), order, &self.values);
         let values = values.map_err(|_| Singular)?;
-        self.factors = Some(Lu::try_new_with_symbolic(factors.clone(), values.as_ref()).map_err(|_| Singular)?);
+        self.factors =
+            Some(Lu::try_new_with_symbolic(factors.clone(), values.as_ref()).map_err(|_| Singular)?);
         Ok(())
     }
 

@@ -132,14 +132,16 @@ pub(crate) fn drop_redundant(model: &mut Model, scene: &Scene) -> Vec<String> {
         .collect();
     let names: Vec<String> = (0..model.couplings.len())
         .map(|index| {
-            let is_it = |joint: &super::JointModel| matches!(joint, super::JointModel::Coupled(i) if *i == index);
+            let is_it =
+                |joint: &super::JointModel| matches!(joint, super::JointModel::Coupled(i) if *i == index);
             scene.joint_name(model.joints.iter().position(is_it).unwrap_or(0))
         })
         .collect();
     let size = model.couplings.iter().map(|coupling| coupling.reach).fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { 1.0 };
     let columns: Vec<usize> = {
-        let mut nodes: Vec<usize> = model.couplings.iter().flat_map(|c| c.nodes.into_iter().flatten()).collect();
+        let mut nodes: Vec<usize> =
+            model.couplings.iter().flat_map(|c| c.nodes.into_iter().flatten()).collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes
@@ -243,7 +245,9 @@ pub(crate) fn refuse_violating_velocities(model: &Model) -> Result<(), SceneErro
                 if translation > VIOLATED * speed { (translation, "m/s") } else { (rotation, "rad/s") };
             return Err(SceneError::new(
                 format!("joint.{index}"),
-                format!("is violated by the velocities at the start: its parts separate by {violation:.3e} {unit}"),
+                format!(
+                    "is violated by the velocities at the start: its parts separate by {violation:.3e} {unit}"
+                ),
                 "velocities and angular velocities of the joined bodies that agree at the joint; rods start at rest",
             ));
         }

@@ -86,22 +86,24 @@ fn carried(pose: &Pose, base: &Vector3<f64>, size: f64) -> Matrix6<f64> {
     map
 }
 
+/// Index of a part, its velocity at its base, and its rotation.
+type Motion = (usize, Vector3<f64>, Vector3<f64>);
+
+/// Six equations: from a column on a block of them.
+type Block = (usize, Matrix6<f64>);
+
 /// A part, with its velocity at its base and its rotation, that can move though every joint holds; parts that are
 /// not `moving` stand still.
 ///
 /// A held node with free body rotations P and anchor c asks v + ω × (c − base) = 0 and (1 − P) Aᵀ ω = 0, a coupling
 /// G (δr, δφ) = 0. Lengths are divided by the size of the mechanism, so that the rank is one of pure numbers.
-fn free_motion(
-    model: &Model,
-    parts: &[Part],
-    moving: &[bool],
-) -> Result<Option<(usize, Vector3<f64>, Vector3<f64>)>, SceneError> {
+fn free_motion(model: &Model, parts: &[Part], moving: &[bool]) -> Result<Option<Motion>, SceneError> {
     for component in components(model, parts.len(), moving) {
         let size = component.iter().map(|&part| parts[part].size).fold(0.0, f64::max);
         let size = if size > 0.0 { size } else { 1.0 };
         let column = |part: usize| component.iter().position(|&other| other == part).map(|k| NODE * k);
         let width = NODE * component.len();
-        let mut rows: Vec<(usize, Matrix6<f64>, Option<(usize, Matrix6<f64>)>)> = Vec::new();
+        let mut rows: Vec<Vec<Block>> = Vec::new();
         for (index, rod) in model.rods.iter().enumerate() {
             let Some(start) = column(index) else { continue };
             for support in &rod.supports {
@@ -112,7 +114,7 @@ fn free_motion(
                 block.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&arm));
                 let held = (nalgebra::Matrix3::identity() - support.free) * pose.rotation.transpose();
                 block.fixed_view_mut::<3, 3>(3, 3).copy_from(&held);
-                rows.push((start, block, None));
+                rows.push(vec![(start, block)]);
             }
         }
         for coupling in &model.couplings {
@@ -122,23 +124,18 @@ fn free_motion(
                 let Some(node) = *node else { continue };
                 let owner = part_of(model, node);
                 let Some(start) = column(owner) else { continue };
-                let mut block =
-                    part * carried(&model.reference.poses()[node], &parts[owner].base, size);
+                let mut block = part * carried(&model.reference.poses()[node], &parts[owner].base, size);
                 let mut lengths = block.fixed_view_mut::<3, 6>(0, 0);
                 lengths /= size;
                 blocks.push((start, block));
             }
-            let mut blocks = blocks.into_iter();
-            if let Some((start, block)) = blocks.next() {
-                rows.push((start, block, blocks.next()));
-            }
+            rows.push(blocks);
         }
         // Zero rows pad the matrix so that the decomposition has all right singular vectors.
         let mut matrix = DMatrix::zeros((NODE * rows.len()).max(width), width);
-        for (index, (start, block, other)) in rows.iter().enumerate() {
-            let blocks = std::iter::once((start, block)).chain(other.iter().map(|(start, block)| (start, block)));
-            for (&start, block) in blocks {
-                let mut view = matrix.view_mut((NODE * index, start), (NODE, NODE));
+        for (index, blocks) in rows.iter().enumerate() {
+            for (start, block) in blocks {
+                let mut view = matrix.view_mut((NODE * index, *start), (NODE, NODE));
                 view += block;
             }
         }

@@ -46,9 +46,10 @@ pub fn build(
         None => Vec::new(),
     };
     let rule = kernel.weights();
-    let lengths = properties.points.chunks_exact(rule.len()).map(|points| {
-        points.iter().zip(&rule).map(|(point, weight)| point.jacobian * weight).sum::<f64>()
-    });
+    let lengths = properties
+        .points
+        .chunks_exact(rule.len())
+        .map(|points| points.iter().zip(&rule).map(|(point, weight)| point.jacobian * weight).sum::<f64>());
     let (length, element_length) =
         lengths.fold((0.0, f64::INFINITY), |(sum, least), x| (sum + x, f64::min(least, x)));
     let model = RodModel {

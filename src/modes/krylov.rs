@@ -121,9 +121,9 @@ fn project(
     let mut pairs = Vec::with_capacity(small.len());
     for (value, coefficients) in small {
         // The phase that makes the largest coefficient real.
-        let largest = coefficients.iter().fold(Complex::new(0.0, 0.0), |largest, c| {
-            if c.norm() > largest.norm() { *c } else { largest }
-        });
+        let largest = coefficients
+            .iter()
+            .fold(Complex::new(0.0, 0.0), |largest, c| if c.norm() > largest.norm() { *c } else { largest });
         let phase = largest.conj() / largest.norm();
         let sum = |of: &[Vec<f64>], part: fn(Complex<f64>) -> f64| {
             let mut sum = vec![0.0; operator.size()];

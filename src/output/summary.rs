@@ -4,9 +4,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Outcome, cannot_write, write_text};
+use super::{Outcome, Results, cannot_write, write_text};
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::scene::{Analysis, Scene};
+use crate::solution::Mode;
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -36,16 +37,17 @@ struct Seconds {
 /// Writes the summary; `output_seconds` is the time the other files took.
 pub(super) fn write(dir: &Path, scene: &Scene, outcome: &Outcome, output_seconds: f64) -> Result<(), Error> {
     let solution = &outcome.solution;
+    let results = Results { scene, solution };
     let statistics = &solution.statistics;
     let (status, message) = match &outcome.failure {
-        None => ("solved", "the whole load is carried".to_owned()),
+        None => ("solved", reached(results)),
         Some(error) => ("stopped", error.to_string()),
     };
     let summary = Summary {
         status,
         message,
         title: scene.title.as_deref(),
-        analysis: "statics",
+        analysis: results.analysis(),
         unknowns: solution.unknowns,
         increments: statistics.increments,
         rejected: statistics.rejected,
@@ -66,4 +68,24 @@ pub(super) fn write(dir: &Path, scene: &Scene, outcome: &Outcome, output_seconds
         serde_json::to_string_pretty(&summary).map_err(|error| cannot_write(&path, error.into()))?;
     text.push('\n');
     write_text(path, &text)
+}
+
+/// What a solve that ended well has reached.
+fn reached(results: Results) -> String {
+    match results.scene.analysis() {
+        Some(Analysis::Dynamics(_)) => "the end time is reached".to_owned(),
+        Some(Analysis::Modes(_)) => modes_found(&results.solution.modes),
+        Some(Analysis::Statics(_)) | None => "the whole load is carried".to_owned(),
+    }
+}
+
+fn modes_found(modes: &[Mode]) -> String {
+    let found = match modes.len() {
+        1 => "1 mode found".to_owned(),
+        count => format!("{count} modes found"),
+    };
+    match modes.iter().filter(|mode| mode.angular_frequency < 0.0).count() {
+        0 => found,
+        unstable => format!("{found}, {unstable} unstable"),
+    }
 }

@@ -1,6 +1,7 @@
 //! The program as its users meet it: exit codes, messages and files.
 
 mod mistakes;
+mod moving;
 mod solver;
 
 use std::path::{Path, PathBuf};
@@ -41,12 +42,12 @@ fn line_of(scene: &str, marker: &str) -> usize {
 }
 
 /// Runs all cases and reports all that fail, so that one slip does not hide the others.
-fn refuses(mistakes: &[Mistake]) {
+fn refuses(good: &str, mistakes: &[Mistake]) {
     let folder = tempfile::tempdir().unwrap();
     let mut wrong = Vec::new();
     for case in mistakes {
-        assert!(GOOD.contains(case.from), "`{}` is not in the scene", case.from);
-        let scene = GOOD.replacen(case.from, case.to, 1);
+        assert!(good.contains(case.from), "`{}` is not in the scene", case.from);
+        let scene = good.replacen(case.from, case.to, 1);
         let path = write_scene(&folder, &scene);
         let line = line_of(&scene, case.at);
         let place = format!("{}:{line}: `{}`: ", path.display(), case.key);
@@ -69,22 +70,22 @@ fn refuses(mistakes: &[Mistake]) {
 
 #[test]
 fn typos_are_refused_in_every_table() {
-    refuses(TYPOS);
+    refuses(GOOD, TYPOS);
 }
 
 #[test]
 fn wrong_forms_are_refused() {
-    refuses(FORMS);
+    refuses(GOOD, FORMS);
 }
 
 #[test]
 fn impossible_values_are_refused() {
-    refuses(VALUES);
+    refuses(GOOD, VALUES);
 }
 
 #[test]
 fn what_is_not_available_yet_is_refused() {
-    refuses(UNAVAILABLE);
+    refuses(GOOD, UNAVAILABLE);
 }
 
 #[test]
@@ -168,6 +169,7 @@ fn wrong_overrides_are_refused() {
         ("gravity.3=1", "an index from 0 to 2"),
         ("title.0=1", "neither a table nor an array"),
         ("body.0.mass=1", "is absent"),
+        ("statics.increment=6", "did you mean `increments`"),
         ("rod.0.elements=0", "`rod.0.elements`: is 0; expected at least 1"),
         ("rod.0.elements=\"x\"", "a whole number"),
         ("rod.0.elemnts=3", "did you mean `elements`"),
@@ -175,7 +177,9 @@ fn wrong_overrides_are_refused() {
         ("rod.0.section.diameter=-1", "a positive diameter"),
         ("gravity.0=nan", "a finite number"),
         ("load.0.value=[0, 0, inf]", "`load.0.value.2`: is inf"),
-        ("dynamics.time_step=1e-3", "not available yet"),
+        ("dynamics.time_step=1e-3", "`dynamics`: is given beside `[statics]`"),
+        ("dynamics.accuracy=1e-3", "`dynamics.accuracy`: is not available yet"),
+        ("modes.count=6", "only one of `[statics]`, `[dynamics]` and `[modes]`"),
         ("rod.0.interpolation=\"quaternion\"", "not available yet"),
     ] {
         let ended = cosserat(&["check", text(&path), "--set", set]);

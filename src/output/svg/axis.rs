@@ -124,6 +124,17 @@ impl Axis {
         Self { range, ticks, title }
     }
 
+    /// The same ticks without numbers and title, above another panel that has them.
+    pub fn without_labels(self) -> Self {
+        let ticks = self.ticks.into_iter().map(|(value, _)| (value, String::new()));
+        Self { ticks: ticks.collect(), title: String::new(), ..self }
+    }
+
+    /// With a changed title.
+    pub fn with_title(self, change: impl FnOnce(&str) -> String) -> Self {
+        Self { title: change(&self.title), ..self }
+    }
+
     /// Quantity and unit.
     pub fn title(&self) -> &str {
         &self.title

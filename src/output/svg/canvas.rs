@@ -127,6 +127,9 @@ impl Canvas<'_> {
     }
 
     fn write(&mut self, text: &str, at: Point, style: TextStyle) -> io::Result<()> {
+        if text.is_empty() {
+            return Ok(());
+        }
         self.backend.draw_text(&printable(text), &style, units(at)).map_err(io::Error::other)
     }
 }
@@ -134,6 +137,16 @@ impl Canvas<'_> {
 /// Width of a text [px], guessed: the reader's font is not known here.
 pub fn text_width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
+}
+
+/// The text, or as much of it as fits.
+pub fn shortened(text: &str, width: f64, size: f64) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let fits = (width / text_width("x", size)) as usize;
+    let start: String = text.chars().take(fits.saturating_sub(1)).collect();
+    format!("{}…", start.trim_end())
 }
 
 fn style(size: f64, slant: FontStyle, anchor: Anchor) -> TextStyle<'static> {

@@ -11,7 +11,7 @@ use crate::solution::Solution;
 use plotters::style::RGBColor;
 
 /// Colours that differ for every kind of colour vision (Okabe & Ito 2008).
-const COLORS: [RGBColor; 6] = [
+pub const COLORS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -26,12 +26,12 @@ const WIDTH: f64 = 1.6;
 /// More lines than this do not fit into a legend.
 const MOST_PROBES: usize = 12;
 /// Curves with at most so many points show them.
-const FEW: usize = 30;
+pub const FEW: usize = 30;
 /// Displacements below this share of the size of the scene are round-off.
-const ROUND_OFF: f64 = 1e-9;
+pub const ROUND_OFF: f64 = 1e-9;
 
 /// A line in the units of the axes.
-type Line = (Pen, Vec<Point>);
+pub type Line = (Pen, Vec<Point>);
 
 /// Curves with their axes and legend.
 pub struct Curves {
@@ -145,7 +145,8 @@ fn components_over_load_factor(scene: &Scene, solution: &Solution, size: f64) ->
     }
 }
 
-fn entry(pen: Pen, text: &str) -> Entry {
+/// A line of the legend with a text.
+pub fn entry(pen: Pen, text: &str) -> Entry {
     Entry { pen, label: Label::Text(text.to_owned()) }
 }
 

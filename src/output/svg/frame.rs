@@ -157,3 +157,37 @@ pub fn draw_entries(canvas: &mut Canvas, entries: &[Entry], at: Point) -> io::Re
     }
     Ok(())
 }
+
+/// Between two entries of a row [px].
+const BETWEEN: f64 = 14.0;
+
+/// Where the entries of a legend begin that runs along the top of a panel, line by line, and the number of lines.
+fn row_places(entries: &[Entry], width: f64) -> (Vec<Point>, usize) {
+    let (mut places, mut x, mut line) = (Vec::new(), 0.0, 0);
+    for entry in entries {
+        let own = legend_size(std::slice::from_ref(entry))[0];
+        if x > 0.0 && x + own > width {
+            (x, line) = (0.0, line + 1);
+        }
+        places.push([x, LINE * line as f64]);
+        x += own + BETWEEN;
+    }
+    (places, if entries.is_empty() { 0 } else { line + 1 })
+}
+
+/// Height of a legend along the top of a panel.
+pub fn row_height(entries: &[Entry], width: f64) -> f64 {
+    match row_places(entries, width).1 {
+        0 => 0.0,
+        lines => LINE * lines as f64 + 3.0,
+    }
+}
+
+/// Draws a legend along the top of a panel, above its upper left corner.
+pub fn draw_row(canvas: &mut Canvas, entries: &[Entry], corner: Point, width: f64) -> io::Result<()> {
+    let top = corner[1] - row_height(entries, width);
+    for (entry, place) in entries.iter().zip(row_places(entries, width).0) {
+        draw_entries(canvas, std::slice::from_ref(entry), [corner[0] + place[0], top + place[1]])?;
+    }
+    Ok(())
+}

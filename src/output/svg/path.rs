@@ -71,6 +71,25 @@ pub fn dashed(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
     pieces
 }
 
+/// A curve from left to right with at most four points in every column of the given width: where it enters and
+/// leaves, and its lowest and highest point.
+pub fn thinned(points: &[Point], column: f64) -> Vec<Point> {
+    let index = |point: &Point| (point[0] / column).floor();
+    let mut kept = Vec::new();
+    for group in points.chunk_by(|a, b| index(a) == index(b)) {
+        let height = |k: &usize| group[*k][1];
+        let all = || 0..group.len();
+        let lowest = all().min_by(|a, b| height(a).total_cmp(&height(b)));
+        let highest = all().max_by(|a, b| height(a).total_cmp(&height(b)));
+        let mut chosen: Vec<usize> =
+            [Some(0), lowest, highest, group.len().checked_sub(1)].into_iter().flatten().collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        kept.extend(chosen.into_iter().map(|k| group[k]));
+    }
+    kept
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +117,20 @@ mod tests {
         assert_eq!(simplify(&[], 0.1), [] as [Point; 0]);
         assert_eq!(simplify(&[[1.0, 2.0]], 0.1), [[1.0, 2.0]]);
         assert_eq!(simplify(&[[1.0, 2.0]; 50], 0.1), [[1.0, 2.0]]);
+    }
+
+    #[test]
+    fn a_column_keeps_what_shows() {
+        let wave: Vec<Point> =
+            (0..100_000).map(|k| k as f64 / 1000.0).map(|x| [x, (7.0 * x).sin()]).collect();
+        let few = thinned(&wave, 0.5);
+        assert!(few.len() <= 4 * 200 && few.len() > 200);
+        assert!(few.windows(2).all(|pair| pair[0][0] < pair[1][0]));
+        assert_eq!((few[0], few[few.len() - 1]), (wave[0], wave[wave.len() - 1]));
+        let highest =
+            |points: &[Point]| points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(highest(&few), highest(&wave));
+        assert_eq!(thinned(&[], 0.5), [] as [Point; 0]);
     }
 
     #[test]

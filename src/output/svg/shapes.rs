@@ -6,7 +6,7 @@ use super::axis::{Axis, Range, Scale, is_drawable};
 use super::canvas::{Anchor, Canvas, GREY, INK, Pen, SMALL, pen, text_width};
 use super::frame::{Area, Entry, Frame, Label, draw_entries, legend_size};
 use super::path::Point;
-use crate::solution::{Shape, Solution};
+use crate::solution::Shape;
 use plotters::style::RGBColor;
 
 /// Colours from the first to the last shape: light to dark, readable in grey too.
@@ -23,25 +23,27 @@ const MOST_SHAPES: usize = 11;
 const GAP: f64 = 14.0;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// How the load is named beside a shape.
+/// How the load, or the time, is named beside a shape.
 pub struct Amount {
     pub name: &'static str,
     pub unit: &'static str,
-    /// Its value at load factor 1.
+    /// Its value at load factor 1, or at 1 s.
     pub full: f64,
+    /// Its largest value in the figure.
+    pub largest: f64,
 }
 
 impl Amount {
     fn scale(&self) -> Scale {
-        Scale::of(self.full)
+        Scale::of(self.largest)
     }
 
     fn title(&self) -> String {
         self.scale().title(self.name, self.unit)
     }
 
-    fn at(&self, load_factor: f64) -> String {
-        self.scale().number(load_factor * self.full)
+    fn at(&self, parameter: f64) -> String {
+        self.scale().number(parameter * self.full)
     }
 }
 
@@ -57,13 +59,12 @@ pub struct Shapes<'a> {
 }
 
 /// Chooses the plane; `None` if there is nothing to draw.
-pub fn shapes(solution: &Solution) -> Option<Shapes<'_>> {
-    let all = &solution.shapes;
+pub fn shapes<'a>(all: &[&'a Shape]) -> Option<Shapes<'a>> {
     let shapes: Vec<&Shape> = if all.len() > MOST_SHAPES {
         let last = MOST_SHAPES - 1;
-        (0..=last).map(|k| &all[k * (all.len() - 1) / last]).collect()
+        (0..=last).map(|k| all[k * (all.len() - 1) / last]).collect()
     } else {
-        all.iter().collect()
+        all.to_vec()
     };
     let range = |axis: usize| {
         let points = shapes.iter().flat_map(|shape| &shape.rods).flatten();

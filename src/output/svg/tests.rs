@@ -1,5 +1,7 @@
 //! Figures of scenes of every kind, and of solutions with next to nothing in them.
 
+mod motion;
+
 use super::*;
 use crate::solution::{ProbePose, Row, Shape};
 

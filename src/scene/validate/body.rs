@@ -1,6 +1,7 @@
 //! One rigid body: its mass, given one way or the other, and its start.
 
 use super::check::{Check, fail, finite_number, non_zero, positive};
+use crate::body::MassProperties;
 use crate::scene::{Body, Shape};
 
 const PAIRS: &str = "either `shape` and `density` or `mass` and `inertia`";
@@ -92,7 +93,7 @@ fn principal(inertia: &[f64; 3], key: &str) -> Check {
 
 /// Finite and positive, also where sizes and density are each but their products are not.
 fn within_range(body: &Body, key: &str) -> Check {
-    let Some((mass, inertia)) = body.mass_and_inertia() else {
+    let Some(MassProperties { mass, inertia }) = MassProperties::new(body) else {
         return Ok(());
     };
     if mass.is_normal() && inertia.iter().all(|moment| moment.is_normal()) {
@@ -100,7 +101,7 @@ fn within_range(body: &Body, key: &str) -> Check {
     }
     fail(
         key,
-        format!("has a mass or inertia beyond all numbers: {mass:?} kg, {inertia:?} kg m²"),
+        format!("has a mass or inertia beyond all numbers: {mass:?} kg, {:?} kg m²", inertia.as_slice()),
         if body.shape.is_some() {
             "sizes and a density whose products are positive and finite"
         } else {

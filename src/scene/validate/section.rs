@@ -35,9 +35,9 @@ pub(super) fn mass(scene: &Scene, rod: &Rod, key: &str) -> Check {
     let (reason, without) = match (moves, weighs) {
         (None, false) => return Ok(()),
         (None, true) => ("takes part in gravity".to_owned(), "`gravity = false`"),
-        (Some(analysis), false) => (format!("has inertia in {analysis}"), "`inertia = false`"),
+        (Some(analysis), false) => (format!("has inertia in `[{analysis}]`"), "`inertia = false`"),
         (Some(analysis), true) => (
-            format!("has inertia in {analysis} and takes part in gravity"),
+            format!("has inertia in `[{analysis}]` and takes part in gravity"),
             "`inertia = false` and `gravity = false`",
         ),
     };

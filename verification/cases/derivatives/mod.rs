@@ -1,9 +1,12 @@
 //! Every derivative that is written by hand, against dual numbers through the paper's formulas (`formulas.rs`).
 //!
 //! Chained: pose → strains → their derivatives; energy density → n, m; forces → tangents, for the nodal increments
-//! r + δr, δP = Q(P) δφ. Dual numbers have no step, so both sides are exact but for rounding.
+//! r + δr, δP = Q(P) δφ; inertia and joints alike. Dual numbers have no step, so both sides are exact but for rounding.
 
+mod bodies;
+mod constraints;
 mod forces;
+mod inertia;
 mod kinematics;
 mod line_loads;
 mod point_loads;
@@ -21,6 +24,9 @@ pub fn all() -> Vec<Case> {
         line_loads::all(),
         point_loads::all(),
         supports::all(),
+        inertia::all(),
+        bodies::all(),
+        constraints::all(),
     ]
     .into_iter()
     .flatten()
