@@ -7,7 +7,7 @@ mod start;
 use crate::assembly::{LoadLevel, Motion, Workspace};
 use crate::inertia::Velocity;
 use crate::linear_solver::NODE;
-use crate::model::Model;
+use crate::model::{JointModel, Model};
 use crate::newton::{Converged, Newton, NotConverged, Test};
 use crate::recorder::Recorder;
 use crate::scene::{Coordinates, Dynamics, Method};
@@ -159,7 +159,9 @@ impl Run<'_> {
             for row in (0..coupling.constraint.rows()).filter(|row| !coupling.rows.contains(row)) {
                 let size = if row < 3 { coupling.reach.max(model.size) } else { 1.0 };
                 if gap[row].abs() > DEPARTED * size {
-                    return Err(StopReason::Departed { coupling: index });
+                    let is_it = |joint: &JointModel| matches!(joint, JointModel::Coupled(i) if *i == index);
+                    let joint = model.joints.iter().position(is_it).unwrap_or(index);
+                    return Err(StopReason::Departed { joint });
                 }
             }
         }

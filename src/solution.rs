@@ -193,10 +193,13 @@ pub enum StopReason {
     #[error("the tangent is singular or a number overflowed")]
     Singular,
     /// A constraint that followed from others at the start, and was not imposed, does so no longer.
-    #[error("a constraint that closes a loop of joints followed from others at the start and now does not")]
+    #[error(
+        "a constraint of joint.{joint} followed from those of other joints at the start, was not imposed, and is now \
+         violated"
+    )]
     Departed {
-        /// Index among the joints with multipliers.
-        coupling: usize,
+        /// Index of the joint.
+        joint: usize,
     },
     /// Neighbouring nodes are half a turn apart, where the relative rotation has no logarithm.
     #[error("element {element} of rod.{rod} is turned by half a turn between its nodes")]

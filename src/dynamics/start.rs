@@ -6,8 +6,7 @@ use crate::rod::StepVelocity;
 use crate::solution::StopReason;
 
 /// Rods without mass have no equation for their acceleration; b² K with b this part of the time step stands in for
-/// their mass matrix. In the limit b → 0 they follow the others without inertia: b² K ü = −(their load), which is zero
-/// at an equilibrium.
+/// their mass matrix. Nothing acts on them at the start, so that they follow the others without inertia as b → 0.
 const MASSLESS: f64 = 1e-4;
 
 /// Makes velocities, accelerations and multipliers consistent:

@@ -1,7 +1,8 @@
 //! The analysis: exactly one, its settings, and what they ask of the rest of the scene.
 
 use super::check::{Check, MOST, at_least_one, fail, finite_number, positive};
-use crate::scene::{Analysis, Coordinates, Dynamics, Method, Modes, Scene, Statics};
+use crate::load::Course;
+use crate::scene::{Analysis, Coordinates, Dynamics, Method, Modes, Rod, Scene, Statics, parse_point};
 
 const TABLES: [&str; 3] = ["statics", "dynamics", "modes"];
 
@@ -79,6 +80,9 @@ fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
     }
     at_least_one("dynamics.max_iterations", options.max_iterations, "iterations")?;
     spectral_radius(scene, options)?;
+    for (index, rod) in scene.rod.iter().enumerate().filter(|(_, rod)| !rod.inertia) {
+        unloaded_start(scene, rod, index)?;
+    }
     if options.method != Method::Radau {
         return Ok(());
     }
@@ -92,6 +96,33 @@ fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
     }
 }
 
+/// What acts at once on a rod without inertia would move it at once: from the unstressed start there is no motion.
+fn unloaded_start(scene: &Scene, rod: &Rod, index: usize) -> Check {
+    if rod.gravity && scene.gravity.is_some_and(|gravity| gravity != [0.0; 3]) {
+        return fail(
+            format!("rod.{index}.gravity"),
+            "is true, but a rod without inertia that weighs something has no motion from the unstressed start",
+            "`gravity = false`, or `inertia = true`",
+        );
+    }
+    for (index, load) in scene.load.iter().enumerate() {
+        let name = parse_point(&load.on).map_or(load.on.as_str(), |(name, _)| name);
+        let acts = Course::new(load.time.as_ref(), scene).factor(0.0) != 0.0 && load.value != [0.0; 3];
+        if name == rod.name && acts {
+            return fail(
+                format!("load.{index}.time"),
+                format!(
+                    "lets the load act at once on the rod {:?}, which has no inertia and so no motion from the \
+                     unstressed start",
+                    rod.name
+                ),
+                "a table that starts from 0, such as `[[0, 0], [0.1, 1]]`, or a rod with `inertia = true`",
+            );
+        }
+    }
+    Ok(())
+}
+
 /// In [0, 1]; 1 only without position-level constraints, whose multipliers it would let grow.
 fn spectral_radius(scene: &Scene, options: &Dynamics) -> Check {
     let radius = options.spectral_radius;
@@ -101,6 +132,13 @@ fn spectral_radius(scene: &Scene, options: &Dynamics) -> Check {
     }
     if radius < 1.0 || options.method != Method::GeneralizedAlpha {
         return Ok(());
+    }
+    if let Some(rod) = scene.rod.iter().find(|rod| !rod.inertia) {
+        return fail(
+            key,
+            format!("is 1, which never calms the velocities of the rod {:?}, which has no inertia", rod.name),
+            "a spectral radius from 0 to below 1",
+        );
     }
     match first_multiplied(scene) {
         None => Ok(()),

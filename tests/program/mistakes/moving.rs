@@ -250,4 +250,6 @@ pub const ANALYSES: &[Mistake] = &[
     mistake(", density = 1200", "", "material", "rod.0.material.density", "but the rod has inertia in `[dynamics]` and takes part in gravity; expected the density [kg/m³], or `inertia = false` and `gravity = false` for this rod"),
     mistake("mass_per_length = 0.5\n", "", "[rod.section]", "rod.1.section.mass_per_length", "has inertia in `[dynamics]`; expected the mass per length [kg/m], or `inertia = false` for this rod"),
     mistake("rotary_inertia = [1e-6, 2e-6, 3e-6]\n", "", "[rod.section]", "rod.1.section.rotary_inertia", "or `inertia = false` for this rod"),
+    mistake("inertia = true", "inertia = false\ngravity = true", "gravity = true", "rod.0.gravity", "no motion from the unstressed start; expected `gravity = false`"),
+    mistake("inertia = true", "inertia = false\ngravity = false", "time = \"constant\"", "load.1.time", "expected a table that starts from 0"),
 ];
