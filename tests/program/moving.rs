@@ -56,8 +56,15 @@ fn moving_parts_are_accepted() {
         // Nothing but a clamp is left, which needs no multipliers.
         &[(joints, ""), ("spectral_radius = 0.8", "spectral_radius = 1")],
         &[("spectral_radius = 0.8", "spectral_radius = 0")],
-        &[("inertia = true", "inertia = false")],
-        &[("inertia = true", "inertia = false\ngravity = false"), (", density = 1200", "")],
+        &[
+            ("inertia = true", "inertia = false\ngravity = false"),
+            ("time = \"constant\"", "time = [[0, 0], [1, 1]]"),
+        ],
+        &[
+            ("inertia = true", "inertia = false\ngravity = false"),
+            ("time = \"constant\"", "time = \"ramp\""),
+            (", density = 1200", ""),
+        ],
         &[
             ("gravity = false", "inertia = false\ngravity = false"),
             ("rotary_inertia = [1e-6, 2e-6, 3e-6]", ""),

@@ -80,20 +80,17 @@ fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
     }
     at_least_one("dynamics.max_iterations", options.max_iterations, "iterations")?;
     spectral_radius(scene, options)?;
-    for (index, rod) in scene.rod.iter().enumerate().filter(|(_, rod)| !rod.inertia) {
-        unloaded_start(scene, rod, index)?;
-    }
-    if options.method != Method::Radau {
-        return Ok(());
-    }
-    match scene.rod.iter().position(|rod| !rod.inertia) {
-        None => Ok(()),
-        Some(index) => fail(
+    let mut massless = scene.rod.iter().enumerate().filter(|(_, rod)| !rod.inertia);
+    if options.method == Method::Radau
+        && let Some((index, _)) = massless.clone().next()
+    {
+        return fail(
             format!("rod.{index}.inertia"),
             "is false, but the method \"radau\" needs inertia of every rod",
             "true, or the method \"generalized-alpha\"",
-        ),
+        );
     }
+    massless.try_for_each(|(index, rod)| unloaded_start(scene, rod, index))
 }
 
 /// What acts at once on a rod without inertia would move it at once: from the unstressed start there is no motion.
