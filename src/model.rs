@@ -1,7 +1,7 @@
 //! Scene → Model: nodes, numbering, joints, loads and probes; frozen afterwards.
 
 mod coupling;
-mod free_motion;
+pub(crate) mod free_motion;
 mod rod;
 
 use std::ops::Range;

@@ -22,6 +22,7 @@ use crate::assembly::{LoadLevel, Motion, Workspace};
 use crate::inertia::Velocity;
 use crate::interpolation::Increment;
 use crate::linear_solver::NODE;
+use crate::model::free_motion::free_motions;
 use crate::model::{Model, ProbedPart};
 use crate::recorder::Recorder;
 use crate::rod::StepVelocity;
@@ -34,8 +35,6 @@ use krylov::{Operator, Pair};
 /// θ is known to rounding; ω² = (1/θ − 1)/b² is, relative to itself, if b² ω² of the lowest mode that is no rigid
 /// motion lies within this and its inverse.
 const WELL_SCALED: f64 = 1e-4;
-/// b² |ω²| below this is rounding: a motion without any stiffness.
-const RIGID: f64 = 1e-10;
 /// Times that b is chosen again.
 const ATTEMPTS: usize = 8;
 /// A pair whose Im ω² is larger, relative to |ω²|, is reported.
@@ -87,16 +86,18 @@ fn frequencies(
     solution: &mut Solution,
 ) -> Result<Vec<Mode>, StopReason> {
     let mut operator = ShiftInvert::new(model, state)?;
+    // Motions without stiffness are known exactly; a loaded model has none, or it would have no equilibrium.
+    let free =
+        if model.loaded() { Vec::new() } else { free_motions(model).map_err(|_| StopReason::Singular)? };
     let mut b = natural_time(model);
     for attempt in 1.. {
         solution.statistics.factorizations += 1;
         operator.factorize(b)?;
-        let pairs = krylov::largest(&mut operator, count)?;
-        let elastic = pairs.iter().map(|pair| pair.stiffness().norm()).filter(|x| *x > RIGID);
-        let lowest = elastic.reduce(f64::min);
+        let pairs = krylov::largest(&mut operator, &free, count.saturating_sub(free.len()).max(1))?;
+        let lowest = pairs.iter().map(|pair| pair.stiffness().norm()).reduce(f64::min);
         let well_scaled = lowest.is_none_or(|x| (WELL_SCALED..1.0 / WELL_SCALED).contains(&x));
         if attempt == ATTEMPTS || well_scaled {
-            return Ok(report(model, state, b, &pairs, count, solution));
+            return Ok(report(model, state, b, (&free, &pairs), count, solution));
         }
         b /= lowest.map_or(1.0, f64::sqrt);
     }
@@ -120,20 +121,23 @@ fn report(
     model: &Model,
     state: &State,
     b: f64,
-    pairs: &[Pair],
+    (free, pairs): (&[Vec<f64>], &[Pair]),
     count: usize,
     solution: &mut Solution,
 ) -> Vec<Mode> {
-    if pairs.len() < count {
+    let found = free.len() + pairs.len();
+    if found < count {
         solution
             .warnings
-            .push(format!("there are only {} modes: nothing else that can move has inertia", pairs.len()));
+            .push(format!("there are only {found} modes: nothing else that can move has inertia"));
     }
-    let mut modes = Vec::with_capacity(pairs.len());
-    for (index, pair) in pairs.iter().enumerate() {
+    let free = free.iter().map(|vector| Mode { angular_frequency: 0.0, shape: shape(model, state, vector) });
+    let mut modes: Vec<Mode> = free.take(count).collect();
+    for pair in pairs.iter().take(count - modes.len()) {
+        let index = modes.len();
         let scaled = pair.stiffness();
         let (real, imaginary) = (scaled.re, scaled.im);
-        if imaginary > COMPLEX * scaled.norm() && scaled.norm() > RIGID {
+        if imaginary > COMPLEX * scaled.norm() {
             solution.warnings.push(format!(
                 "modes {} and {} have complex frequencies, ω² = {:.6e} (1 ± {:.1e} i) rad²/s²: the \
                  discretisation's, they turn real as the mesh is refined",
@@ -143,7 +147,7 @@ fn report(
                 imaginary / scaled.norm()
             ));
         }
-        if real < -RIGID {
+        if real < 0.0 {
             solution.warnings.push(format!(
                 "the equilibrium is unstable: mode {} grows as exp({:.6e} t/s); its frequency is given as \
                  negative",
@@ -151,7 +155,7 @@ fn report(
                 (-real).sqrt() / b
             ));
         }
-        let angular_frequency = if real.abs() <= RIGID { 0.0 } else { real.abs().sqrt().copysign(real) / b };
+        let angular_frequency = real.abs().sqrt().copysign(real) / b;
         modes.push(Mode { angular_frequency, shape: shape(model, state, &pair.vector) });
     }
     modes

@@ -1,6 +1,6 @@
 //! Rigid motions that the joints leave free: in statics there is no solution then, nor for rods without mass.
 
-use nalgebra::{DMatrix, Matrix6, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
 
 use super::Model;
 use crate::error::SceneError;
@@ -94,63 +94,9 @@ type Block = (usize, Matrix6<f64>);
 
 /// A part, with its velocity at its base and its rotation, that can move though every joint holds; parts that are
 /// not `moving` stand still.
-///
-/// A held node with free body rotations P and anchor c asks v + ω × (c − base) = 0 and (1 − P) Aᵀ ω = 0, a coupling
-/// G (δr, δφ) = 0. Lengths are divided by the size of the mechanism, so that the rank is one of pure numbers.
 fn free_motion(model: &Model, parts: &[Part], moving: &[bool]) -> Result<Option<Motion>, SceneError> {
     for component in components(model, parts.len(), moving) {
-        let size = component.iter().map(|&part| parts[part].size).fold(0.0, f64::max);
-        let size = if size > 0.0 { size } else { 1.0 };
-        let column = |part: usize| component.iter().position(|&other| other == part).map(|k| NODE * k);
-        let width = NODE * component.len();
-        let mut rows: Vec<Vec<Block>> = Vec::new();
-        for (index, rod) in model.rods.iter().enumerate() {
-            let Some(start) = column(index) else { continue };
-            for support in &rod.supports {
-                let pose = &model.reference.poses()[rod.range.start + support.node];
-                let mut block = Matrix6::zeros();
-                let arm = (support.anchor - parts[index].base) / size;
-                block.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
-                block.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&arm));
-                let held = (nalgebra::Matrix3::identity() - support.free) * pose.rotation.transpose();
-                block.fixed_view_mut::<3, 3>(3, 3).copy_from(&held);
-                rows.push(vec![(start, block)]);
-            }
-        }
-        for coupling in &model.couplings {
-            let [a, b] = coupling.poses(&model.reference);
-            let mut blocks = Vec::new();
-            for (node, part) in coupling.nodes.iter().zip(coupling.constraint.jacobian(a, b)) {
-                let Some(node) = *node else { continue };
-                let owner = part_of(model, node);
-                let Some(start) = column(owner) else { continue };
-                let mut block = part * carried(&model.reference.poses()[node], &parts[owner].base, size);
-                let mut lengths = block.fixed_view_mut::<3, 6>(0, 0);
-                lengths /= size;
-                blocks.push((start, block));
-            }
-            rows.push(blocks);
-        }
-        // Zero rows pad the matrix so that the decomposition has all right singular vectors.
-        let mut matrix = DMatrix::zeros((NODE * rows.len()).max(width), width);
-        for (index, blocks) in rows.iter().enumerate() {
-            for (start, block) in blocks {
-                let mut view = matrix.view_mut((NODE * index, *start), (NODE, NODE));
-                view += block;
-            }
-        }
-        let name = || component.first().map_or("", |&part| parts[part].name.as_str());
-        let beyond = || {
-            let problem = format!("holds {} at points beyond all numbers", name());
-            SceneError::new("joint", problem, "points within reach of the parts")
-        };
-        if !matrix.iter().all(|x: &f64| x.is_finite()) {
-            return Err(beyond());
-        }
-        let decomposition = matrix.try_svd(false, true, f64::EPSILON, 10_000).ok_or_else(beyond)?;
-        let (index, value) = decomposition.singular_values.argmin();
-        let Some(motion) = decomposition.v_t.filter(|_| value <= 1e-9) else { continue };
-        let motion = motion.row(index).transpose();
+        let Some(motion) = null_space(model, parts, &component)?.into_iter().next() else { continue };
         let (k, part) = component
             .iter()
             .enumerate()
@@ -160,9 +106,95 @@ fn free_motion(model: &Model, parts: &[Part], moving: &[bool]) -> Result<Option<
             })
             .map_or((0, 0), |(k, &part)| (k, part));
         let of = |i: usize| Vector3::from_fn(|j, _| motion[NODE * k + i + j]);
-        return Ok(Some((part, of(0) * size, of(3))));
+        return Ok(Some((part, of(0) * size(parts, &component), of(3))));
     }
     Ok(None)
+}
+
+/// All motions of the model without strain, as six numbers (δr, δφ) a node.
+pub fn free_motions(model: &Model) -> Result<Vec<Vec<f64>>, SceneError> {
+    let parts = parts(model);
+    let mut motions = Vec::new();
+    for component in components(model, parts.len(), &vec![true; parts.len()]) {
+        let size = size(&parts, &component);
+        for motion in null_space(model, &parts, &component)? {
+            let mut vector = vec![0.0; NODE * model.reference.poses().len()];
+            for (node, (row, pose)) in vector.chunks_exact_mut(NODE).zip(model.reference.poses()).enumerate()
+            {
+                let part = part_of(model, node);
+                let Some(k) = component.iter().position(|&other| other == part) else { continue };
+                let of_part = motion.fixed_rows::<NODE>(NODE * k);
+                row.copy_from_slice((carried(pose, &parts[part].base, size) * of_part).as_slice());
+            }
+            motions.push(vector);
+        }
+    }
+    Ok(motions)
+}
+
+fn size(parts: &[Part], component: &[usize]) -> f64 {
+    let size = component.iter().map(|&part| parts[part].size).fold(0.0, f64::max);
+    if size > 0.0 { size } else { 1.0 }
+}
+
+/// The motions (v/size, ω) of the parts of a component that every joint allows, the freest first.
+///
+/// A held node with free body rotations P and anchor c asks v + ω × (c − base) = 0 and (1 − P) Aᵀ ω = 0, a coupling
+/// G (δr, δφ) = 0. Lengths are divided by the size of the mechanism, so that the rank is one of pure numbers.
+fn null_space(model: &Model, parts: &[Part], component: &[usize]) -> Result<Vec<DVector<f64>>, SceneError> {
+    let size = size(parts, component);
+    let column = |part: usize| component.iter().position(|&other| other == part).map(|k| NODE * k);
+    let width = NODE * component.len();
+    let mut rows: Vec<Vec<Block>> = Vec::new();
+    for (index, rod) in model.rods.iter().enumerate() {
+        let Some(start) = column(index) else { continue };
+        for support in &rod.supports {
+            let pose = &model.reference.poses()[rod.range.start + support.node];
+            let mut block = Matrix6::zeros();
+            let arm = (support.anchor - parts[index].base) / size;
+            block.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
+            block.fixed_view_mut::<3, 3>(0, 3).copy_from(&-skew(&arm));
+            let held = (nalgebra::Matrix3::identity() - support.free) * pose.rotation.transpose();
+            block.fixed_view_mut::<3, 3>(3, 3).copy_from(&held);
+            rows.push(vec![(start, block)]);
+        }
+    }
+    for coupling in &model.couplings {
+        let [a, b] = coupling.poses(&model.reference);
+        let mut blocks = Vec::new();
+        for (node, part) in coupling.nodes.iter().zip(coupling.constraint.jacobian(a, b)) {
+            let Some(node) = *node else { continue };
+            let owner = part_of(model, node);
+            let Some(start) = column(owner) else { continue };
+            let mut block = part * carried(&model.reference.poses()[node], &parts[owner].base, size);
+            let mut lengths = block.fixed_view_mut::<3, 6>(0, 0);
+            lengths /= size;
+            blocks.push((start, block));
+        }
+        rows.push(blocks);
+    }
+    // Zero rows pad the matrix so that the decomposition has all right singular vectors.
+    let mut matrix = DMatrix::zeros((NODE * rows.len()).max(width), width);
+    for (index, blocks) in rows.iter().enumerate() {
+        for (start, block) in blocks {
+            let mut view = matrix.view_mut((NODE * index, *start), (NODE, NODE));
+            view += block;
+        }
+    }
+    let beyond = || {
+        let name = component.first().map_or("", |&part| parts[part].name.as_str());
+        let problem = format!("holds {name} at points beyond all numbers");
+        SceneError::new("joint", problem, "points within reach of the parts")
+    };
+    if !matrix.iter().all(|x: &f64| x.is_finite()) {
+        return Err(beyond());
+    }
+    let decomposition = matrix.try_svd(false, true, f64::EPSILON, 10_000).ok_or_else(beyond)?;
+    let Some(vectors) = decomposition.v_t else { return Ok(Vec::new()) };
+    let values = decomposition.singular_values;
+    let mut free: Vec<usize> = (0..values.len()).filter(|&k| values[k] <= 1e-9).collect();
+    free.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    Ok(free.into_iter().map(|k| vectors.row(k).transpose()).collect())
 }
 
 /// The moving parts, by what is joined without the help of the ground or of parts that stand still.

@@ -17,7 +17,7 @@ pub trait Operator {
     fn solve(&mut self, mass_times_x: &[f64]) -> Result<Vec<f64>, StopReason>;
 }
 
-/// An eigenvalue θ with the real part of its vector, M-normalised.
+/// An eigenvalue θ with a real vector.
 #[derive(Clone, Debug)]
 pub struct Pair {
     /// θ.
@@ -39,18 +39,33 @@ const GUARD: usize = 6;
 const NOTHING: f64 = 1e-10;
 /// ‖S M x − θ x‖ ≤ this |θ| ‖x‖, in M: the pair is found, θ to about the square of it.
 const FOUND: f64 = 1e-9;
+/// A residual below this that no longer falls has reached what rounding leaves of it: ε (ω_max/ω)² with the highest
+/// frequency of the mesh.
+const FLOOR: f64 = 1e-4;
 /// θ below this part of the largest is rounding: an infinite frequency.
 const INFINITE: f64 = 1e-13;
 /// Blocks after which the search is given up.
 const MOST_BLOCKS: usize = 30;
 
-/// The pairs with the smallest Re (1/θ), `count` of them or all there are.
+/// The pairs with the smallest Re (1/θ), `count` of them or all there are, beside those of the `known` vectors, which
+/// span an invariant space R.
 ///
-/// Every block is S M times the one before, orthonormalised in M against all of them (Gram–Schmidt, twice); vectors
-/// that add nothing are dropped, and when none is left the space is invariant and holds all that has inertia. The pairs
-/// of VᵀM S M V are tested by their residual.
-pub fn largest(operator: &mut dyn Operator, count: usize) -> Result<Vec<Pair>, StopReason> {
+/// Every block is S M times the one before, orthonormalised in M against R and all of them (Gram–Schmidt, twice);
+/// vectors that add nothing are dropped, and when none is left the space is invariant and holds all that has inertia.
+/// The pairs of VᵀM S M V are tested by their residual. Without R: since S M R ⊂ R, the operator less its part along R
+/// has the other eigenvalues, whatever complement is taken; from its vector z the operator's own is z + R c with
+/// (θ − θ_R) c = RᵀM S M z, θ_R = 1.
+pub fn largest(
+    operator: &mut dyn Operator,
+    known: &[Vec<f64>],
+    count: usize,
+) -> Result<Vec<Pair>, StopReason> {
     let size = operator.size();
+    let mut space = Space::default();
+    for vector in known {
+        space.add(operator, vector.clone());
+    }
+    let rigid = space.vectors.len();
     let mut numbers = 0x9E37_79B9_7F4A_7C15_u64;
     let mut random = || {
         numbers = numbers.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -63,48 +78,79 @@ pub fn largest(operator: &mut dyn Operator, count: usize) -> Result<Vec<Pair>, S
         let load = operator.mass(&start);
         next.push(operator.solve(&load)?);
     }
-    // V, M V and S M V.
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let (mut loads, mut images) = (basis.clone(), basis.clone());
+    let mut images: Vec<Vec<f64>> = Vec::new();
+    let mut worst_before = f64::INFINITY;
     for _ in 0..MOST_BLOCKS {
-        let first = basis.len();
-        for mut vector in std::mem::take(&mut next) {
-            let mut load = operator.mass(&vector);
-            let before = dot(&vector, &load).max(0.0).sqrt();
-            for _ in 0..2 {
-                for (other, other_load) in basis.iter().zip(&loads) {
-                    let share = dot(other_load, &vector);
-                    axpy(-share, other, &mut vector);
+        let first = images.len();
+        for vector in std::mem::take(&mut next) {
+            if space.add(operator, vector) {
+                let load = &space.loads[rigid + images.len()];
+                let mut image = operator.solve(load)?;
+                space.remove(rigid, &mut image);
+                images.push(image);
+            }
+        }
+        let invariant = images.len() == first;
+        let (mut pairs, worst) = project(operator, &space, rigid, &images, wanted)?;
+        let at_floor = worst <= FLOOR && worst > 0.5 * worst_before;
+        if invariant || (pairs.len() == wanted && (worst <= FOUND || at_floor)) {
+            for pair in &mut pairs {
+                let load = operator.mass(&pair.vector);
+                let image = operator.solve(&load)?;
+                for (vector, load) in space.vectors[..rigid].iter().zip(&space.loads) {
+                    axpy(dot(load, &image) / (pair.value.re - 1.0), vector, &mut pair.vector);
                 }
             }
-            load.clone_from(&operator.mass(&vector));
-            let norm = dot(&vector, &load).max(0.0).sqrt();
-            if norm > NOTHING * before && norm.is_normal() {
-                vector.iter_mut().for_each(|x| *x /= norm);
-                load.iter_mut().for_each(|x| *x /= norm);
-                images.push(operator.solve(&load)?);
-                basis.push(vector);
-                loads.push(load);
-            }
-        }
-        let invariant = basis.len() == first;
-        let (pairs, all_found) = project(operator, &basis, &loads, &images, wanted)?;
-        if invariant || (pairs.len() == wanted && all_found) {
             return Ok(pairs);
         }
+        worst_before = worst;
         next = images[first..].to_vec();
     }
     Err(StopReason::Iterations)
 }
 
-/// The wanted pairs of the projection, and whether all have been found.
+/// Vectors v orthonormal in M, and M v.
+#[derive(Default)]
+struct Space {
+    vectors: Vec<Vec<f64>>,
+    loads: Vec<Vec<f64>>,
+}
+
+impl Space {
+    /// Takes from x its part along the first `count` vectors.
+    fn remove(&self, count: usize, x: &mut [f64]) {
+        for _ in 0..2 {
+            for (vector, load) in self.vectors[..count].iter().zip(&self.loads) {
+                axpy(-dot(load, x), vector, x);
+            }
+        }
+    }
+
+    /// Adds what a vector has beyond the space; `false` if that is nothing.
+    fn add(&mut self, operator: &mut dyn Operator, mut vector: Vec<f64>) -> bool {
+        let before = dot(&vector, &operator.mass(&vector)).max(0.0).sqrt();
+        self.remove(self.vectors.len(), &mut vector);
+        let mut load = operator.mass(&vector);
+        let norm = dot(&vector, &load).max(0.0).sqrt();
+        if !(norm > NOTHING * before && norm.is_normal()) {
+            return false;
+        }
+        vector.iter_mut().chain(&mut load).for_each(|x| *x /= norm);
+        self.vectors.push(vector);
+        self.loads.push(load);
+        true
+    }
+}
+
+/// The wanted pairs of the projection on the vectors after the first `rigid`, and their largest relative residual.
 fn project(
     operator: &mut dyn Operator,
-    basis: &[Vec<f64>],
-    loads: &[Vec<f64>],
+    space: &Space,
+    rigid: usize,
     images: &[Vec<f64>],
     wanted: usize,
-) -> Result<(Vec<Pair>, bool), StopReason> {
+) -> Result<(Vec<Pair>, f64), StopReason> {
+    let (basis, loads) = (&space.vectors[rigid..], &space.loads[rigid..]);
     let matrix: Vec<Vec<f64>> =
         loads.iter().map(|load| images.iter().map(|image| dot(load, image)).collect()).collect();
     let mut small = eigenpairs(&matrix).map_err(|_| StopReason::Singular)?;
@@ -117,7 +163,7 @@ fn project(
         a.re.total_cmp(&b.re).then(b.im.total_cmp(&a.im))
     });
     small.truncate(wanted);
-    let mut all_found = true;
+    let mut worst = 0.0_f64;
     let mut pairs = Vec::with_capacity(small.len());
     for (value, coefficients) in small {
         // The phase that makes the largest coefficient real.
@@ -146,10 +192,11 @@ fn project(
         };
         let error = (norm(&residual) + norm(&residual_imaginary)).sqrt();
         let size = (norm(&real) + norm(&imaginary)).sqrt();
-        all_found &= error <= FOUND * value.norm() * size;
-        pairs.push(Pair { value, vector: real });
+        worst = worst.max(error / (value.norm() * size));
+        // A complex pair spans a plane: the real part for the first of the two, the imaginary one for the second.
+        pairs.push(Pair { value, vector: if value.im < 0.0 { imaginary } else { real } });
     }
-    Ok((pairs, all_found))
+    Ok((pairs, worst))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
