@@ -25,6 +25,19 @@
 //! virtual rotations are not the variation of (6), f is not the gradient of the discrete energy and its tangent is
 //! unsymmetric: linear momentum holds exactly, energy and angular momentum to the order of the discretisation.
 //!
+//! In motion the nodes have velocities u_i = (v_i, ω_i), interpolated by the same basis (9), so that the mass matrix
+//! (13) is constant and symmetric, and rigid bodies are nodes of their own. With perfect joints g(q) = 0, G = ∂g/∂q:
+//!
+//! ```text
+//! q̇ = B(q) u                                         ṙ = v,  Ṗ = Q(P) ω                                     (10)
+//! M u̇ + fᵍʸʳ(u) = f(t, q) + Gᵀ λ,  g(q) = 0           fᵍʸʳ = ∫ N_i ω × I_ρ ω J dξ                      (13), (14)
+//! (K − ω² M) x = Gᵀ μ,  G x = 0                       small vibrations about an equilibrium, K = −∂(f + Gᵀ λ)/∂q
+//! ```
+//!
+//! (eq. (15) prints the gyroscopic force with the other sign, which does not conserve angular momentum). [`dynamics`]
+//! integrates them at position level by generalized-α, or by Radau IIA for answers whose time error can be told from
+//! the space error; [`modes`] finds the lowest frequencies.
+//!
 //! # Notation
 //!
 //! | here | meaning | unit |
@@ -34,6 +47,8 @@
 //! | γ̄ = J γ, κ̄ = J κ | strains per parameter | m, rad |
 //! | n, m | contact force and moment, cross-section basis | N, N m |
 //! | δr, δφ | nodal increment: δr inertial, δA = A δφ̃ | m, rad |
+//! | v, ω | velocity, inertial; angular velocity, body basis | m/s, rad/s |
+//! | g, G, λ | gaps of the joints, their derivative, multipliers | m or –, –, N or N m |
 //! | K, I | cross-section and inertial basis | |
 //!
 //! SI units throughout; six-vectors have the translation first; quaternions are scalar first and lead from the

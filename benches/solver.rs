@@ -1,11 +1,11 @@
-//! Static solves of the paper's spring and of the 45° bend. What is covered: see README.md beside this file.
+//! The paper's two experiments, the 45° bend, and frequencies. What is covered: see README.md beside this file.
 
 use std::hint::black_box;
 use std::path::Path;
 
 use cosserat::assembly::{LoadLevel, Workspace};
-use cosserat::scene::{Coordinates, Reference};
-use cosserat::{Model, Scene, statics};
+use cosserat::scene::{Coordinates, Modes, Reference};
+use cosserat::{Model, Scene, dynamics, modes, statics};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn scene(name: &str) -> Scene {
@@ -63,5 +63,33 @@ fn solves(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, fit, iteration, solves);
+/// The Wilberforce pendulum: consistent start and one step, and the paper's eight seconds.
+fn motions(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("wilberforce");
+    group.sample_size(10);
+    let scene = scene("wilberforce.toml");
+    let model = model(&scene);
+    for (name, end_time) in [("start_and_one_step", 5e-3), ("8_seconds", 8.0)] {
+        let Some(mut options) = scene.dynamics.clone() else { continue };
+        options.end_time = end_time;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| dynamics::solve(&model, &options, &mut |_, _| ()).expect("solvable"));
+        });
+    }
+    group.finish();
+}
+
+/// Six modes of the pendulum about the shape stretched by the weight.
+fn frequencies(criterion: &mut Criterion) {
+    let mut scene = scene("wilberforce.toml");
+    scene.dynamics = None;
+    let options = Modes { count: 6 };
+    scene.modes = Some(options.clone());
+    let model = model(&scene);
+    criterion.bench_function("wilberforce/six_modes", |bencher| {
+        bencher.iter(|| modes::solve(&model, &options, &mut |_, _| ()).expect("solvable"));
+    });
+}
+
+criterion_group!(benches, fit, iteration, solves, motions, frequencies);
 criterion_main!(benches);
