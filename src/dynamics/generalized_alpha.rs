@@ -164,8 +164,8 @@ impl Equations for Step<'_, '_> {
             let y = u.rotation * (0.5 * b);
             let turn = Vector4::new(1.0, y.x, y.y, y.z) / (1.0 + y.norm_squared());
             state.set_quaternion(node, quaternion_product(&known.quaternion, &turn));
-            travel.0 = travel.0.max(h * (u.translation.amax() + h * rate.translation.amax()));
-            travel.1 = travel.1.max(h * (u.rotation.amax() + h * rate.rotation.amax()));
+            travel.0 = travel.0.max(h * u.translation.amax());
+            travel.1 = travel.1.max(h * u.rotation.amax());
         }
         work.evaluate(model, state, &level(self.time), Some(motion))?;
         let step = StepVelocity { velocities: &motion.velocities, b };
