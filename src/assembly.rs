@@ -1,5 +1,7 @@
 //! Residual and tangent of a model, and the workspace that both write to.
 
+mod blocks;
+
 use nalgebra::{Matrix6, Vector3, Vector4, Vector6};
 
 use crate::element::{LineLoad, Stress};
@@ -14,6 +16,7 @@ use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::Coordinates;
 use crate::solution::StopReason;
 use crate::state::State;
+pub use blocks::{Block, Blocks, ConstraintRow};
 
 /// How much of every load acts.
 #[derive(Clone, Copy, Debug, PartialEq)]

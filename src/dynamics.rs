@@ -2,6 +2,7 @@
 //! the velocities given, eq. (10) to (15). The gyroscopic force has the sign that conserves angular momentum.
 
 mod generalized_alpha;
+mod radau;
 mod start;
 
 use crate::assembly::{LoadLevel, Motion, Workspace};
@@ -14,6 +15,7 @@ use crate::scene::{Coordinates, Dynamics, Method};
 use crate::solution::{Energies, Solution, SolveError, SolveFailure, Statistics, StopReason};
 use crate::state::State;
 use generalized_alpha::GeneralizedAlpha;
+use radau::Radau;
 
 /// A last step that is shorter than this part of the others is merged with the one before it.
 const SHORTEST_STEP: f64 = 1e-6;
@@ -97,6 +99,19 @@ pub(crate) fn level(time: f64) -> LoadLevel {
     LoadLevel { load_factor: time, preload: 1.0 }
 }
 
+/// A method that follows the motion in time.
+trait Integrator {
+    /// Moves on by `length` to `time`; everything of `moving` is evaluated there.
+    fn step(
+        &mut self,
+        moving: &mut Moving,
+        time: f64,
+        length: f64,
+        newton: &Newton,
+        statistics: &mut Statistics,
+    ) -> Result<Converged, NotConverged>;
+}
+
 struct Run<'a> {
     motion: Moving<'a>,
     newton: Newton,
@@ -113,12 +128,14 @@ impl Run<'_> {
         progress: &mut dyn FnMut(f64, &Statistics),
     ) -> Result<(), SolveError> {
         let step = options.time_step;
-        let started = start::accelerate(&mut self.motion, step);
+        let started = start::accelerate(&mut self.motion, 0.0, step);
         let recorded = started.and_then(|()| self.record(0.0));
         recorded.map_err(|reason| SolveError::InitialAcceleration { reason })?;
-        let mut integrator = match options.method {
-            Method::GeneralizedAlpha => GeneralizedAlpha::new(options.spectral_radius, &self.motion),
-            Method::Radau => GeneralizedAlpha::new(options.spectral_radius, &self.motion),
+        let mut integrator: Box<dyn Integrator> = match options.method {
+            Method::GeneralizedAlpha => {
+                Box::new(GeneralizedAlpha::new(options.spectral_radius, &self.motion))
+            }
+            Method::Radau => Box::new(Radau::new(&self.motion)),
         };
         let mut index = 0;
         while self.time < options.end_time {
@@ -188,6 +205,9 @@ const DEPARTED: f64 = 1e-6;
 
 /// Positions carry the rounding error ε L, accelerations at position level ε L/h², joint forces m ε L/h².
 fn joint_noise(model: &Model, options: &Dynamics, solution: &Solution) -> Option<String> {
+    if options.method != Method::GeneralizedAlpha {
+        return None;
+    }
     let mass = |node: usize| {
         let body = model.bodies.iter().find(|body| body.node == node);
         body.map_or(0.0, |body| body.mass.mass)

@@ -141,7 +141,12 @@ pub enum Target<'a> {
         /// First row of this rod.
         first_row: usize,
     },
+    /// Every element's blocks as they are, row by row.
+    Blocks(&'a mut Vec<Matrix6<f64>>),
 }
+
+/// Takes m_ij [m] and ∫ N_i N_j ω J dx [m/s] of the nodes i and j of a rod.
+pub type InertiaVisitor<'a> = dyn FnMut([usize; 2], f64, &Vector3<f64>) + 'a;
 
 /// |Δξ| within which a point counts as a node.
 pub const NODE_TOLERANCE: f64 = 1e-9;
@@ -193,6 +198,10 @@ pub trait RodElements: Debug + Send + Sync {
         first: usize,
         forces: &mut NodalForces,
     );
+
+    /// Calls `visit` with m_ij [m] and ∫ N_i N_j ω J dx [m/s], of which M_ij and D_ij are made, for every pair of nodes
+    /// of every element in the order of [`Target::Blocks`]; not at all without inertia.
+    fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor);
 
     /// ½ uᵀ M u [J].
     fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64;
@@ -507,6 +516,31 @@ where
         }
     }
 
+    fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor) {
+        let Some(inertia) = &properties.inertia else { return };
+        for e in 0..self.elements {
+            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let velocities = self.of(e, velocities);
+            let mut spins = [[Vector3::zeros(); N]; N];
+            for (basis, jacobian) in self.full_rule.iter().zip(jacobians) {
+                let nodes = basis.value.iter().zip(velocities);
+                let omega: Vector3<f64> = nodes.map(|(value, u)| u.rotation * *value).sum();
+                let weighted = omega * (basis.weight * jacobian);
+                for i in 0..N {
+                    for j in 0..N {
+                        spins[i][j] += weighted * (basis.value[i] * basis.value[j]);
+                    }
+                }
+            }
+            let first = e * (N - 1);
+            for i in 0..N {
+                for j in 0..N {
+                    visit([first + i, first + j], mass[i][j], &spins[i][j]);
+                }
+            }
+        }
+    }
+
     fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64 {
         let Some(inertia) = &properties.inertia else { return 0.0 };
         let of_element = |e| {
@@ -554,7 +588,7 @@ where
         for step in 0..self.elements {
             let e = match target {
                 Target::Chain(chain) => chain.element(step),
-                Target::Quaternions { .. } => step,
+                Target::Quaternions { .. } | Target::Blocks(_) => step,
             };
             let nodes = self.of(e, poses);
             let mut tangent = zero_tangent::<N>();
@@ -587,6 +621,7 @@ where
                         &quaternions[first + i]
                     });
                 }
+                Target::Blocks(blocks) => blocks.extend(tangent.iter().flatten()),
             }
         }
         Ok(())

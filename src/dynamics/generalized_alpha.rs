@@ -20,7 +20,7 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use super::{Moving, level};
+use super::{Integrator, Moving, level};
 use crate::assembly::Residual;
 use crate::inertia::{Velocity, spin_from_turn};
 use crate::newton::{Converged, Equations, Newton, NotConverged};
@@ -79,9 +79,10 @@ impl GeneralizedAlpha {
             rates,
         }
     }
+}
 
-    /// Moves on by `length` to `time`.
-    pub fn step(
+impl Integrator for GeneralizedAlpha {
+    fn step(
         &mut self,
         moving: &mut Moving,
         time: f64,

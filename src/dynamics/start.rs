@@ -1,44 +1,44 @@
-//! Accelerations and multipliers that agree with the positions and velocities of the start.
+//! Velocities, accelerations and multipliers that agree with the positions: at the start, and after steps that impose
+//! less.
+
+use nalgebra::Vector6;
 
 use super::{Moving, level};
+use crate::inertia::Velocity;
 use crate::linear_solver::NODE;
+use crate::model::Coupling;
 use crate::rod::StepVelocity;
 use crate::solution::StopReason;
+use crate::state::State;
 
 /// Rods without mass have no equation for their acceleration; b² K with b this part of the time step stands in for
 /// their mass matrix. Nothing acts on them at the start, so that they follow the others without inertia as b → 0.
 const MASSLESS: f64 = 1e-4;
 
-/// Makes velocities, accelerations and multipliers consistent:
+/// Makes velocities, accelerations and multipliers at a time consistent with the positions:
 ///
 /// ```text
 /// ⎡M  −Gᵀ⎤ ⎡Δu⎤   ⎡  0 ⎤        ⎡M  −Gᵀ⎤ ⎡u̇⎤   ⎡f − fᵍʸʳ⎤
 /// ⎣G   0 ⎦ ⎣ μ⎦ = ⎣−G u⎦        ⎣G   0 ⎦ ⎣λ⎦ = ⎣ −Ġ u   ⎦
 /// ```
 ///
-/// The first removes what rounding of the scene's numbers leaves of G u, at least kinetic energy; both have the same
-/// matrix, which is that of a time step of no length.
-pub fn accelerate(moving: &mut Moving, time_step: f64) -> Result<(), StopReason> {
+/// At the start the first removes what rounding of the scene's numbers leaves of G u, at least kinetic energy; both
+/// have the same matrix, which is that of a time step of no length.
+pub fn accelerate(moving: &mut Moving, time: f64, time_step: f64) -> Result<(), StopReason> {
     let model = moving.model;
     let nodes = moving.state.poses().len();
     let mut right = vec![0.0; NODE * nodes + moving.state.multipliers().len()];
     let massless = model.rods.iter().any(|rod| rod.properties.inertia.is_none());
     let b = if massless { MASSLESS * time_step } else { 0.0 };
-    moving.work.evaluate(model, &moving.state, &level(0.0), Some(&moving.motion))?;
-    moving.work.reset_stresses();
-    let still = vec![Default::default(); nodes];
-    let step = StepVelocity { velocities: &still, b };
-    moving.work.factorize(model, &moving.state, &level(0.0), Some(&step))?;
+    moving.motion.accelerations.fill(Velocity::default());
+    moving.state.multipliers_mut().fill(0.0);
+    moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))?;
+    factorize(moving, time, b)?;
 
     for coupling in &model.couplings {
-        let [a, c] = coupling.poses(&moving.state);
-        let parts = coupling.constraint.jacobian(a, c);
+        let rate = gap_rate(coupling, &moving.state, &moving.motion.velocities);
         for (k, &row) in coupling.rows.iter().enumerate() {
-            let mut rate = 0.0;
-            for (part, velocity) in parts.iter().zip(coupling.velocities(&moving.motion.velocities)) {
-                rate += part.row(row).iter().zip(super::rows(&velocity)).map(|(g, u)| g * u).sum::<f64>();
-            }
-            right[NODE * nodes + coupling.first + k] = -rate;
+            right[NODE * nodes + coupling.first + k] = -rate[row];
         }
     }
     moving.work.solve_right(model, &mut right)?;
@@ -47,7 +47,7 @@ pub fn accelerate(moving: &mut Moving, time_step: f64) -> Result<(), StopReason>
         velocity.rotation += nalgebra::Vector3::from_column_slice(&change[3..]);
     }
 
-    moving.work.evaluate(model, &moving.state, &level(0.0), Some(&moving.motion))?;
+    moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))?;
     for (node, row) in right.chunks_exact_mut(NODE).take(nodes).enumerate() {
         row[..3].copy_from_slice(moving.work.forces.force[node].as_slice());
         row[3..].copy_from_slice(moving.work.forces.moment[node].as_slice());
@@ -71,5 +71,21 @@ pub fn accelerate(moving: &mut Moving, time_step: f64) -> Result<(), StopReason>
         acceleration.rotation = nalgebra::Vector3::from_column_slice(&row[3..]);
     }
     moving.state.multipliers_mut().copy_from_slice(&right[NODE * nodes..]);
-    moving.work.evaluate(model, &moving.state, &level(0.0), Some(&moving.motion))
+    moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))
+}
+
+/// Factorises [[M, −Gᵀ], [G, 0]], with b² K for what has no mass, where the motion was evaluated last.
+pub fn factorize(moving: &mut Moving, time: f64, b: f64) -> Result<(), StopReason> {
+    let Moving { model, state, work, .. } = moving;
+    work.reset_stresses();
+    let still = vec![Velocity::default(); state.poses().len()];
+    work.factorize(model, state, &level(time), Some(&StepVelocity { velocities: &still, b }))
+}
+
+/// G u of a joint; also of its rows that are not imposed.
+pub fn gap_rate(coupling: &Coupling, state: &State, velocities: &[Velocity]) -> Vector6<f64> {
+    let [a, b] = coupling.poses(state);
+    let [u_a, u_b] = coupling.velocities(velocities).map(|u| Vector6::from(super::rows(&u)));
+    let [of_a, of_b] = coupling.constraint.jacobian(a, b);
+    of_a * u_a + of_b * u_b
 }
