@@ -201,6 +201,7 @@ material = { young_modulus = 1e7, poisson_ratio = 0.5, density = 1100 }
 elements = 4
 degree = 2
 inertia = false
+gravity = false
 [[body]]
 name = "bob"
 shape = { kind = "cylinder", radius = 23e-3, height = 36e-3 }
