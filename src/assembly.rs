@@ -1,22 +1,26 @@
 //! Residual and tangent of a model, and the workspace that both write to.
 
 mod blocks;
+mod coupled;
+mod residual;
 
 use nalgebra::{Matrix6, Vector3, Vector4, Vector6};
 
 use crate::element::{LineLoad, Stress};
 use crate::fit::increment_of;
 use crate::inertia::Velocity;
-use crate::interpolation::{Increment, Pose};
-use crate::linear_solver::{Chain, Coupled, NODE, Singular, Sparse};
+use crate::interpolation::Increment;
+use crate::linear_solver::{NODE, Singular, Sparse};
 use crate::load::Course;
-use crate::model::{BodyModel, Model, RodModel};
+use crate::model::{Model, RodModel};
 use crate::rod::{Applied, NodalForces, QUATERNION_NODE, StepVelocity, TangentError, Target};
 use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::Coordinates;
 use crate::solution::StopReason;
 use crate::state::State;
 pub use blocks::{Block, Blocks, ConstraintRow};
+use coupled::{Chains, factorize_chains};
+pub use residual::{RELATIVE_TOLERANCE, Residual};
 
 /// How much of every load acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,19 +36,6 @@ impl LoadLevel {
         self.preload * course.factor(self.load_factor)
     }
 }
-
-/// The residual of a state in the two ways of measuring it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Residual {
-    /// max |f| and |g| over all free rows [N, N m; m, rad], mixed: the paper's test.
-    pub absolute: f64,
-    /// max over rods and bodies of |R_f|/(F + F₀/τ) and |R_m|/(M + M₀/τ), and over joints of |g| against what their
-    /// parts travel, to be held against τ.
-    pub relative: f64,
-}
-
-/// τ of the unit-free test.
-pub const RELATIVE_TOLERANCE: f64 = 1e-9;
 
 /// What belongs to one rod.
 #[derive(Clone, Debug)]
@@ -72,67 +63,6 @@ enum LinearSystem {
     Chains(Box<Chains>),
     /// The paper's system (16)+(17) of all rods, seven unknowns a node.
     Quaternions(Box<Sparse>),
-}
-
-/// Chains, and the system of their kept nodes, of the bodies and of the multipliers.
-struct Chains {
-    chains: Vec<Chain>,
-    coupled: Coupled,
-    /// First row of every coupled node in that system; `None` for the chains' own.
-    places: Vec<Option<usize>>,
-    /// The coupled nodes in the order of their rows.
-    nodes: Vec<usize>,
-    right: Vec<f64>,
-}
-
-impl Chains {
-    fn new(model: &Model) -> Self {
-        let joined = || model.couplings.iter().flat_map(|coupling| coupling.nodes.into_iter().flatten());
-        let chain = |rod: &RodModel| {
-            let own = joined().filter(|node| rod.range.contains(node));
-            let kept: Vec<usize> = own.map(|node| node - rod.range.start).collect();
-            Chain::new(rod.elements, rod.degree, &kept)
-        };
-        let chains: Vec<Chain> = model.rods.iter().map(chain).collect();
-        let of_rods = model.rods.iter().zip(&chains);
-        let kept = of_rods.flat_map(|(rod, chain)| chain.kept().iter().map(|node| rod.range.start + node));
-        let nodes: Vec<usize> = kept.chain(model.bodies.iter().map(|body| body.node)).collect();
-        let mut places = vec![None; model.reference.poses().len()];
-        for (index, &node) in nodes.iter().enumerate() {
-            places[node] = Some(NODE * index);
-        }
-        let size = NODE * nodes.len() + model.reference.multipliers().len();
-        Self { chains, coupled: Coupled::new(size), places, nodes, right: vec![0.0; size] }
-    }
-
-    /// Adds a block to the coupled system, by nodes of the model.
-    fn add(&mut self, row: usize, column: usize, block: &Matrix6<f64>) {
-        if let (Some(row), Some(column)) = (self.places[row], self.places[column]) {
-            self.coupled.add_block(row, column, block);
-        }
-    }
-
-    /// b ← K⁻¹ b: six entries a node, then the multipliers.
-    fn solve(&mut self, model: &Model, b: &mut [f64]) -> Result<(), Singular> {
-        for (rod, chain) in model.rods.iter().zip(&self.chains) {
-            chain.forward(&mut b[NODE * rod.range.start..NODE * rod.range.end]);
-        }
-        let nodal = NODE * self.nodes.len();
-        for (&node, right) in self.nodes.iter().zip(self.right.chunks_exact_mut(NODE)) {
-            right.copy_from_slice(&b[NODE * node..][..NODE]);
-        }
-        let multipliers = NODE * self.places.len();
-        self.right[nodal..].copy_from_slice(&b[multipliers..]);
-        self.coupled.solve(&mut self.right)?;
-        for (&node, right) in self.nodes.iter().zip(self.right.chunks_exact(NODE)) {
-            b[NODE * node..][..NODE].copy_from_slice(right);
-        }
-        b[multipliers..].copy_from_slice(&self.right[nodal..]);
-        for (rod, chain) in model.rods.iter().zip(&self.chains) {
-            chain.backward(&mut b[NODE * rod.range.start..NODE * rod.range.end]);
-        }
-        Ok(())
-    }
 }
 
 /// Memory of a solve. Nothing is allocated in an iteration, but by the sparse alternatives.
@@ -253,67 +183,6 @@ impl Workspace {
             let (force, moment) = body.mass.inertia_force(u, a);
             self.forces.add(body.node, &force, &moment);
         }
-    }
-
-    /// The residual of what was evaluated last; NaN if a number overflowed. `travel` is what joints may be off by,
-    /// (displacement [m], rotation [rad]) times τ; `step` is given in a time step.
-    pub fn residual(
-        &self,
-        model: &Model,
-        state: &State,
-        travel: (f64, f64),
-        step: Option<&StepVelocity>,
-    ) -> Residual {
-        let mut result = Residual::default();
-        if let LinearSystem::Quaternions(_) = self.system {
-            // Eq. (17), a pure number in either test.
-            let constraint = |sum, p: &Vector4<f64>| largest(sum, (p.norm_squared() - 1.0).abs());
-            result.absolute = state.quaternions().iter().fold(0.0, constraint);
-            result.relative = result.absolute;
-        }
-        let mut add = |force, moment, scales: (f64, f64)| {
-            result.absolute = largest(result.absolute, largest(force, moment));
-            let relative = largest(ratio(force, scales.0), ratio(moment, scales.1));
-            result.relative = largest(result.relative, relative);
-        };
-        for rod in &model.rods {
-            let poses = &state.poses()[rod.range.clone()];
-            let (mut force, mut moment) = (0.0, 0.0);
-            let mut supports = rod.supports.iter().peekable();
-            for (node, pose) in poses.iter().enumerate() {
-                let index = rod.range.start + node;
-                let (f, m) = (&self.forces.force[index], &self.forces.moment[index]);
-                if let Some(support) = supports.next_if(|support| support.node == node) {
-                    moment = largest(moment, max_norm(&support.free_moment(&pose.rotation, f, m)));
-                } else {
-                    force = largest(force, max_norm(f));
-                    moment = largest(moment, max_norm(m));
-                }
-            }
-            add(force, moment, tolerance_scales(rod, &self.forces, poses));
-        }
-        for body in &model.bodies {
-            let forces = &self.forces;
-            let scales = (forces.force_scale[body.node], forces.moment_scale[body.node]);
-            let floor = body_floor(body, scales.0, step);
-            let (force, moment) = (max_norm(&forces.force[body.node]), max_norm(&forces.moment[body.node]));
-            add(
-                force,
-                moment,
-                (scales.0 + floor.0 / RELATIVE_TOLERANCE, scales.1 + floor.1 / RELATIVE_TOLERANCE),
-            );
-        }
-        for (coupling, gap) in model.couplings.iter().zip(&self.gaps) {
-            let reach = coupling.poses(state).iter().map(|pose| pose.position.amax()).fold(0.0, f64::max);
-            let floor = 8.0 * f64::EPSILON / RELATIVE_TOLERANCE;
-            let (mut translation, mut rotation) = (0.0, 0.0);
-            for &row in &coupling.rows {
-                let side = if row < 3 { &mut translation } else { &mut rotation };
-                *side = largest(*side, gap[row].abs());
-            }
-            add(translation, rotation, (travel.0 + floor * (reach + coupling.reach), travel.1 + floor));
-        }
-        result
     }
 
     /// Builds and factorises the tangent at the state and level that were evaluated last. In a time step that is
@@ -497,60 +366,6 @@ impl Workspace {
     }
 }
 
-/// Bodies, joints and what is left of the chains, after every chain has its elements.
-fn factorize_chains(
-    system: &mut Chains,
-    model: &Model,
-    state: &State,
-    level: &LoadLevel,
-    step: Option<&StepVelocity>,
-) -> Result<(), Singular> {
-    system.coupled.clear();
-    for (index, rod) in model.rods.iter().enumerate() {
-        system.chains[index].factorize()?;
-        let first = rod.range.start;
-        for (row, column, block) in system.chains[index].remainder() {
-            if let (Some(row), Some(column)) = (system.places[first + row], system.places[first + column]) {
-                system.coupled.add_block(row, column, block);
-            }
-        }
-    }
-    let scale = step.map_or(1.0, |step| step.b * step.b);
-    for body in &model.bodies {
-        let mut block = Matrix6::zeros();
-        for load in &body.loads {
-            block += load.tangent(&state.poses()[body.node], level.factor(&load.course)) * scale;
-        }
-        if let Some(step) = step {
-            block += body.mass.inertia_tangent(&step.velocities[body.node], step.b);
-        }
-        system.add(body.node, body.node, &block);
-    }
-    let first = NODE * system.nodes.len();
-    for coupling in &model.couplings {
-        let [a, b] = coupling.poses(state);
-        let tangent = coupling.constraint.tangent(a, b, &coupling.multipliers(state));
-        let jacobian = coupling.constraint.jacobian(a, b);
-        for (i, row_node) in coupling.nodes.iter().enumerate() {
-            let Some(row_node) = *row_node else { continue };
-            for (j, column_node) in coupling.nodes.iter().enumerate() {
-                if let Some(column_node) = *column_node {
-                    system.add(row_node, column_node, &(tangent[i][j] * scale));
-                }
-            }
-            let Some(place) = system.places[row_node] else { continue };
-            for (k, &row) in coupling.rows.iter().enumerate() {
-                let multiplier = first + coupling.first + k;
-                for c in 0..NODE {
-                    system.coupled.add(multiplier, place + c, jacobian[i][(row, c)]);
-                    system.coupled.add(place + c, multiplier, -jacobian[i][(row, c)]);
-                }
-            }
-        }
-    }
-    system.coupled.factorize()
-}
-
 /// Puts held nodes where their rotation asks for.
 pub fn place_supports(rod: &RodModel, state: &mut State) {
     for support in &rod.supports {
@@ -579,55 +394,4 @@ fn add_unit_constraints(system: &mut Sparse, state: &State) {
             system.add(QUATERNION_NODE * node + 6, QUATERNION_NODE * node + 3 + k, 2.0 * component);
         }
     }
-}
-
-/// The larger, or NaN if one is.
-fn largest(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
-}
-
-/// max |v_k|, or NaN if one is (`amax` would pass over it).
-fn max_norm(v: &Vector3<f64>) -> f64 {
-    largest(v.x.abs(), largest(v.y.abs(), v.z.abs()))
-}
-
-/// a/b for a residual and its scale; an unloaded, unstrained rod has 0/0 = 0, and a scale that overflowed
-/// (a/∞ = 0 would look converged) gives NaN.
-fn ratio(a: f64, b: f64) -> f64 {
-    if !b.is_finite() {
-        f64::NAN
-    } else if a == 0.0 {
-        0.0
-    } else {
-        a / b
-    }
-}
-
-/// (F₀, M₀) of a body: a moment may vanish to rounding where a force has a lever, and an acceleration is known to
-/// ε |u|/b, where u stands for the speeds of the whole body: one that only spins has no velocity to compare with.
-fn body_floor(body: &BodyModel, force_scale: f64, step: Option<&StepVelocity>) -> (f64, f64) {
-    let noise = 8.0 * f64::EPSILON;
-    let lever = noise * force_scale * body.reach;
-    let Some(step) = step else { return (0.0, lever) };
-    let (u, inertia) = (&step.velocities[body.node], body.mass.inertia.max());
-    let size = (inertia / body.mass.mass).sqrt();
-    let speed = u.translation.norm() + u.rotation.norm() * size;
-    (noise * body.mass.mass * speed / step.b, lever + noise * inertia * speed / (size * step.b))
-}
-
-/// (F + F₀/τ, M + M₀/τ): the largest nodal sums of absolute contributions, and the rounding floors.
-///
-/// A position carries the error ε|r|, a strain 1/J_e · p² times that, hence F₀ = 8 ε C_γ |r| p²/J_e. A matrix
-/// entry carries ε, hence 8 ε C_κ p²/J_e in the moments, and γ̄ × n adds J_e F₀.
-fn tolerance_scales(rod: &RodModel, forces: &NodalForces, poses: &[Pose]) -> (f64, f64) {
-    let largest_of = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-    let reach = poses.iter().map(|pose| pose.position.amax()).fold(0.0, f64::max);
-    let amplification = 8.0 * f64::EPSILON * (rod.degree * rod.degree) as f64 / rod.element_length;
-    let force_floor = amplification * rod.properties.stiffness.force.max() * reach;
-    let moment_floor =
-        amplification * rod.properties.stiffness.moment.max() + force_floor * rod.element_length;
-    (
-        largest_of(&forces.force_scale[rod.range.clone()]) + force_floor / RELATIVE_TOLERANCE,
-        largest_of(&forces.moment_scale[rod.range.clone()]) + moment_floor / RELATIVE_TOLERANCE,
-    )
 }

@@ -42,9 +42,10 @@ pub fn solve(
         statistics: Statistics::default(),
         recorder: Recorder::new(model, options.end_time),
         time: 0.0,
+        reached: model.reference.clone(),
     };
     let outcome = run.follow(options, progress);
-    let mut solution = run.recorder.finish(model, &run.motion.state, run.statistics);
+    let mut solution = run.recorder.finish(model, &run.reached, run.statistics);
     solution.warnings.extend(joint_noise(model, options, &solution));
     match outcome {
         Ok(()) => Ok(solution),
@@ -117,8 +118,9 @@ struct Run<'a> {
     newton: Newton,
     statistics: Statistics,
     recorder: Recorder,
-    /// The last time that was reached.
+    /// The last time that was reached, and the state there: Newton's last iterate may be anywhere.
     time: f64,
+    reached: State,
 }
 
 impl Run<'_> {
@@ -155,6 +157,7 @@ impl Run<'_> {
                 })
                 .map_err(|stop| self.error(time, &stop))?;
             self.time = time;
+            self.reached.clone_from(&self.motion.state);
             self.statistics.increments += 1;
             self.statistics.most_iterations = self.statistics.most_iterations.max(converged.iterations);
             self.statistics.residual = self.statistics.residual.max(converged.residual);

@@ -1,0 +1,484 @@
+//! Loops over the elements of one rod, for N nodes an element and one interpolation.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+use super::{
+    Applied, InertiaVisitor, NODE_TOLERANCE, Needs, NodalForces, QUATERNION_NODE, RodElements, RodInertia,
+    RodProperties, StepVelocity, TangentError, Target, full_points,
+};
+use crate::element::{
+    ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, advance_stress,
+    internal_force, internal_tangent, line_load_force, line_load_tangent, zero_tangent,
+};
+use crate::fit;
+use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
+use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
+use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
+use crate::linear_solver::{NODE, Sparse};
+use crate::quadrature::gauss_legendre;
+use crate::rotation::rotation_from_quaternion_rate;
+use crate::scene::{NodeSpacing, QuadratureKind};
+use crate::state::State;
+
+/// Elements of N nodes with interpolation I.
+#[derive(Debug)]
+pub struct Elements<const N: usize, I> {
+    elements: usize,
+    nodes: [f64; N],
+    rule: Vec<Basis<N>>,
+    full_rule: Vec<Basis<N>>,
+    interpolation: PhantomData<I>,
+}
+
+impl<const N: usize, I> Elements<N, I>
+where
+    I: Interpolation<N> + Debug + Send + Sync + 'static,
+{
+    pub(super) fn boxed(
+        elements: usize,
+        spacing: NodeSpacing,
+        quadrature: QuadratureKind,
+    ) -> Option<Box<dyn RodElements>> {
+        let degree = N - 1;
+        let nodes: [f64; N] = element_nodes(degree, spacing).try_into().ok()?;
+        let points = match quadrature {
+            QuadratureKind::Reduced => degree,
+            QuadratureKind::Full => full_points(degree),
+        };
+        Some(Box::new(Self {
+            elements,
+            nodes,
+            rule: basis_at_rule(&nodes, &gauss_legendre(points)),
+            full_rule: basis_at_rule(&nodes, &gauss_legendre(full_points(degree))),
+            interpolation: PhantomData::<I>,
+        }))
+    }
+
+    /// The nodes of element e among those of the rod.
+    #[inline]
+    fn of<'a, T>(&self, e: usize, all: &'a [T]) -> &'a [T; N] {
+        let first = e * (N - 1);
+        all[first..first + N].first_chunk().unwrap_or_else(|| unreachable!("a slice of N has a chunk of N"))
+    }
+
+    /// Element and local coordinate of ξ.
+    pub(crate) fn locate(&self, xi: f64) -> (usize, f64) {
+        let place = xi.clamp(0.0, 1.0) * self.elements as f64;
+        let e = (place.floor() as usize).min(self.elements - 1);
+        (e, place - e as f64)
+    }
+
+    pub(crate) fn basis_at(&self, x: f64) -> Basis<N> {
+        basis(&self.nodes, x, 1.0)
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.elements
+    }
+
+    /// The node of the rod that lies at x of element e.
+    fn node_at(&self, e: usize, x: f64) -> Option<usize> {
+        let near = |node: &f64| (node - x).abs() <= NODE_TOLERANCE * self.elements as f64;
+        Some(e * (N - 1) + self.nodes.iter().position(near)?)
+    }
+
+    /// J at the full rule's points of element e and m_ij.
+    fn mass_of<'a>(
+        &self,
+        e: usize,
+        properties: &'a RodProperties,
+        inertia: &'a RodInertia,
+    ) -> (&'a [f64], &'a [[f64; N]; N]) {
+        let points = self.full_rule.len();
+        let rows = inertia.coefficients[e * N * N..][..N * N].as_chunks::<N>().0;
+        let mass = rows.first_chunk().unwrap_or_else(|| unreachable!("N rows of N"));
+        (&properties.full_jacobians[e * points..][..points], mass)
+    }
+
+    /// A node shared by two elements is owned by the first.
+    fn owned(e: usize, node: usize) -> bool {
+        e == 0 || node > e * (N - 1)
+    }
+
+    /// Adds the tangents of the loads at the nodes of element e.
+    fn add_loads(&self, e: usize, applied: &Applied, tangent: &mut ElementTangent<N>) {
+        let first = e * (N - 1);
+        let start = applied.tangents.partition_point(|(node, _)| *node < first);
+        for (node, block) in applied.tangents[start..].iter().take_while(|(node, _)| *node < first + N) {
+            if Self::owned(e, *node) {
+                tangent[node - first][node - first] += block;
+            }
+        }
+    }
+
+    /// K → b² K + (M + b D) diag(1, Y⁻¹); without inertia b² K.
+    fn add_step(
+        &self,
+        e: usize,
+        properties: &RodProperties,
+        step: &StepVelocity,
+        tangent: &mut ElementTangent<N>,
+    ) {
+        let Some(inertia) = &properties.inertia else {
+            for block in tangent.iter_mut().flatten() {
+                *block *= step.b * step.b;
+            }
+            return;
+        };
+        let (jacobians, mass) = self.mass_of(e, properties, inertia);
+        inertia_tangent::<N>(
+            &self.full_rule,
+            jacobians,
+            mass,
+            &inertia.section,
+            self.of(e, step.velocities),
+            step.b,
+            tangent,
+        );
+    }
+
+    /// Reduces the held nodes of element e.
+    fn hold(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
+        let first = e * (N - 1);
+        let start = applied.supports.partition_point(|support| support.node < first);
+        for support in applied.supports[start..].iter().take_while(|support| support.node < first + N) {
+            let node = support.node;
+            let owner = Self::owned(e, node);
+            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owner);
+        }
+    }
+}
+
+impl<const N: usize, I> RodElements for Elements<N, I>
+where
+    I: Interpolation<N> + Debug + Send + Sync + 'static,
+{
+    fn weights(&self) -> Vec<f64> {
+        self.rule.iter().map(|basis| basis.weight).collect()
+    }
+
+    fn properties(
+        &self,
+        poses: &[Pose],
+        stiffness: Stiffness,
+        needs: &Needs,
+    ) -> Result<RodProperties, usize> {
+        let mut result =
+            RodProperties { stiffness, points: Vec::new(), full_jacobians: Vec::new(), inertia: None };
+        let full = needs.line_loads || needs.inertia.is_some();
+        for e in 0..self.elements {
+            let nodes = self.of(e, poses);
+            for basis in &self.rule {
+                let strain = I::strain(nodes, basis).map_err(|_| e)?;
+                // ‖r⁰′‖ = ‖A⁻ᵀ γ̄‖: A is not quite orthogonal between the nodes.
+                let inverse = strain.rotation.transpose().try_inverse().ok_or(e)?;
+                let jacobian = (inverse * strain.gamma).norm();
+                if !(strain.rotation.determinant() > 1e-3 && jacobian > 0.0) {
+                    return Err(e);
+                }
+                let (gamma, kappa) = (strain.gamma / jacobian, strain.kappa / jacobian);
+                result.points.push(ReferencePoint { jacobian, gamma, kappa });
+            }
+            for basis in self.full_rule.iter().filter(|_| full) {
+                let strain = I::strain(nodes, basis).map_err(|_| e)?;
+                let inverse = strain.rotation.transpose().try_inverse().ok_or(e)?;
+                result.full_jacobians.push((inverse * strain.gamma).norm());
+            }
+        }
+        if let Some(section) = needs.inertia {
+            let jacobians = result.full_jacobians.chunks_exact(self.full_rule.len());
+            let coefficients = jacobians.flat_map(|jacobians| {
+                mass_coefficients::<N>(&self.full_rule, jacobians).into_iter().flatten()
+            });
+            result.inertia = Some(RodInertia { section, coefficients: coefficients.collect() });
+        }
+        Ok(result)
+    }
+
+    fn add_forces(
+        &self,
+        poses: &[Pose],
+        properties: &RodProperties,
+        line_load: Option<&LineLoad>,
+        constitutive: &mut [Stress],
+        first: usize,
+        forces: &mut NodalForces,
+    ) -> Result<(), usize> {
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
+        for e in 0..self.elements {
+            let nodes = self.of(e, poses);
+            let mut element = ElementForce::default();
+            let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
+            internal_force::<N, I>(nodes, &self.rule, points, &properties.stiffness, stresses, &mut element)
+                .map_err(|_| e)?;
+            if let Some(line_load) = line_load {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
+                    .map_err(|_| e)?;
+            }
+            forces.scatter(first + e * (N - 1), &element);
+        }
+        Ok(())
+    }
+
+    fn add_inertia(
+        &self,
+        properties: &RodProperties,
+        velocities: &[Velocity],
+        accelerations: &[Velocity],
+        first: usize,
+        forces: &mut NodalForces,
+    ) {
+        let Some(inertia) = &properties.inertia else { return };
+        for e in 0..self.elements {
+            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let mut element = ElementForce::default();
+            inertia_force::<N>(
+                &self.full_rule,
+                jacobians,
+                mass,
+                &inertia.section,
+                self.of(e, velocities),
+                self.of(e, accelerations),
+                &mut element,
+            );
+            forces.scatter(first + e * (N - 1), &element);
+        }
+    }
+
+    fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor) {
+        let Some(inertia) = &properties.inertia else { return };
+        for e in 0..self.elements {
+            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let velocities = self.of(e, velocities);
+            let mut spins = [[Vector3::zeros(); N]; N];
+            for (basis, jacobian) in self.full_rule.iter().zip(jacobians) {
+                let nodes = basis.value.iter().zip(velocities);
+                let omega: Vector3<f64> = nodes.map(|(value, u)| u.rotation * *value).sum();
+                let weighted = omega * (basis.weight * jacobian);
+                for i in 0..N {
+                    for j in 0..N {
+                        spins[i][j] += weighted * (basis.value[i] * basis.value[j]);
+                    }
+                }
+            }
+            let first = e * (N - 1);
+            for i in 0..N {
+                for j in 0..N {
+                    visit([first + i, first + j], mass[i][j], &spins[i][j]);
+                }
+            }
+        }
+    }
+
+    fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64 {
+        let Some(inertia) = &properties.inertia else { return 0.0 };
+        let of_element = |e| {
+            let mass = self.mass_of(e, properties, inertia).1;
+            kinetic_energy::<N>(mass, &inertia.section, self.of(e, velocities))
+        };
+        (0..self.elements).map(of_element).sum()
+    }
+
+    fn strain_energy(&self, properties: &RodProperties, constitutive: &[Stress]) -> f64 {
+        let stiffness = &properties.stiffness;
+        let weights = self.rule.iter().map(|basis| basis.weight).cycle();
+        let density = |stress: &Stress| {
+            0.5 * (stress.force.dot(&stress.force.component_div(&stiffness.force))
+                + stress.moment.dot(&stress.moment.component_div(&stiffness.moment)))
+        };
+        let points = properties.points.iter().zip(constitutive).zip(weights);
+        points.map(|((point, stress), weight)| weight * point.jacobian * density(stress)).sum()
+    }
+
+    fn nodal_lengths(&self, properties: &RodProperties) -> Vec<f64> {
+        let mut lengths = vec![0.0; self.elements * (N - 1) + 1];
+        for (e, jacobians) in properties.full_jacobians.chunks_exact(self.full_rule.len()).enumerate() {
+            for (basis, jacobian) in self.full_rule.iter().zip(jacobians) {
+                for (length, value) in lengths[e * (N - 1)..].iter_mut().zip(&basis.value) {
+                    *length += basis.weight * jacobian * value;
+                }
+            }
+        }
+        lengths
+    }
+
+    fn assemble_tangent(
+        &self,
+        state: &State,
+        range: Range<usize>,
+        properties: &RodProperties,
+        stresses: &[Stress],
+        applied: &Applied,
+        target: &mut Target,
+    ) -> Result<(), TangentError> {
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
+        let poses = &state.poses()[range.clone()];
+        let turning = applied.line_loaded && applied.line_load.turns();
+        for step in 0..self.elements {
+            let e = match target {
+                Target::Chain(chain) => chain.element(step),
+                Target::Quaternions { .. } | Target::Blocks(_) => step,
+            };
+            let nodes = self.of(e, poses);
+            let mut tangent = zero_tangent::<N>();
+            let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
+            internal_tangent::<N, I>(
+                nodes,
+                &self.rule,
+                points,
+                &properties.stiffness,
+                stresses,
+                &mut tangent,
+            )
+            .map_err(|_| TangentError::HalfTurn(e))?;
+            if turning {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_tangent::<N, I>(nodes, &self.full_rule, jacobians, applied.line_load, &mut tangent)
+                    .map_err(|_| TangentError::HalfTurn(e))?;
+            }
+            self.add_loads(e, applied, &mut tangent);
+            if let Some(step) = &applied.step {
+                self.add_step(e, properties, step, &mut tangent);
+            }
+            self.hold(e, poses, applied, &mut tangent);
+            match target {
+                Target::Chain(chain) => chain.add_element(step, &tangent)?,
+                Target::Quaternions { system, first_row } => {
+                    let first = e * (N - 1);
+                    let quaternions = &state.quaternions()[range.clone()];
+                    add_quaternion_element(system, *first_row + QUATERNION_NODE * first, &tangent, |i| {
+                        &quaternions[first + i]
+                    });
+                }
+                Target::Blocks(blocks) => blocks.extend(tangent.iter().flatten()),
+            }
+        }
+        Ok(())
+    }
+
+    fn advance_stresses(
+        &self,
+        poses: &[Pose],
+        properties: &RodProperties,
+        increments: &[Increment],
+        constitutive: &[Stress],
+        stresses: &mut [Stress],
+    ) -> Result<(), usize> {
+        let q = self.rule.len();
+        for e in 0..self.elements {
+            let points = e * q..(e + 1) * q;
+            advance_stress::<N, I>(
+                self.of(e, poses),
+                &self.rule,
+                &properties.points[points.clone()],
+                &properties.stiffness,
+                self.of(e, increments),
+                &constitutive[points.clone()],
+                &mut stresses[points],
+            )
+            .map_err(|_| e)?;
+        }
+        Ok(())
+    }
+
+    fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn> {
+        let (e, x) = self.locate(xi);
+        // At a node the pose is the node's own, to the last digit.
+        match self.node_at(e, x) {
+            Some(node) => Ok(poses[node]),
+            None => I::pose(self.of(e, poses), &self.basis_at(x)),
+        }
+    }
+
+    fn pose_increment(
+        &self,
+        poses: &[Pose],
+        increments: &[Increment],
+        xi: f64,
+    ) -> Result<(Matrix3<f64>, Increment), HalfTurn> {
+        let (e, x) = self.locate(xi);
+        if let Some(node) = self.node_at(e, x) {
+            return Ok((poses[node].rotation, increments[node]));
+        }
+        let d = I::pose_derivative(self.of(e, poses), &self.basis_at(x))?;
+        let mut sum = Increment::default();
+        for (j, increment) in self.of(e, increments).iter().enumerate() {
+            sum.translation += d.position_translation[j] * increment.translation
+                + d.position_rotation[j] * increment.rotation;
+            sum.rotation += d.rotation_rotation[j] * increment.rotation;
+        }
+        Ok((d.pose.rotation, sum))
+    }
+
+    fn smallest_determinant(&self, poses: &[Pose]) -> (usize, f64) {
+        let mut smallest = (0, 1.0);
+        for e in 0..self.elements {
+            for basis in &self.rule {
+                let determinant =
+                    I::strain(self.of(e, poses), basis).map_or(0.0, |s| s.rotation.determinant());
+                if determinant < smallest.1 {
+                    smallest = (e, determinant);
+                }
+            }
+        }
+        smallest
+    }
+
+    fn smallest_stretch(&self, poses: &[Pose], properties: &RodProperties) -> (usize, f64) {
+        let mut smallest = (0, f64::INFINITY);
+        for (e, points) in properties.points.chunks_exact(self.rule.len()).enumerate() {
+            for (basis, reference) in self.rule.iter().zip(points) {
+                let stretch =
+                    I::strain(self.of(e, poses), basis).map_or(1.0, |s| s.gamma.x / reference.jacobian);
+                if stretch < smallest.1 {
+                    smallest = (e, stretch);
+                }
+            }
+        }
+        smallest
+    }
+
+    fn node_positions(&self) -> Vec<f64> {
+        let last = self.elements * (N - 1);
+        (0..=last)
+            .map(|node| {
+                let e = (node / (N - 1)).min(self.elements - 1);
+                (e as f64 + self.nodes[node - e * (N - 1)]) / self.elements as f64
+            })
+            .collect()
+    }
+
+    fn fit(&self, state: &mut State, samples: &[Pose]) -> Result<fit::FitReport, fit::FitError> {
+        fit::fit::<N, I>(self, state, samples)
+    }
+}
+
+/// Columns (r, P) by δφ = T(P) δP, eq. (10); rows as they are. The unit constraint is added per node elsewhere.
+fn add_quaternion_element<'a, const N: usize>(
+    system: &mut Sparse,
+    first: usize,
+    tangent: &ElementTangent<N>,
+    quaternion: impl Fn(usize) -> &'a Vector4<f64>,
+) {
+    for j in 0..N {
+        let rate = rotation_from_quaternion_rate(quaternion(j));
+        for (i, row) in tangent.iter().enumerate() {
+            let turned = row[j].fixed_view::<6, 3>(0, 3) * rate;
+            for r in 0..NODE {
+                let row_index = first + QUATERNION_NODE * i + r;
+                let column = first + QUATERNION_NODE * j;
+                for c in 0..3 {
+                    system.add(row_index, column + c, row[j][(r, c)]);
+                }
+                for c in 0..4 {
+                    system.add(row_index, column + 3 + c, turned[(r, c)]);
+                }
+            }
+        }
+    }
+}
