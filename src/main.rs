@@ -245,7 +245,7 @@ fn report(scene: &Scene, outcome: &Outcome) {
         work.rejected,
         outcome.setup_seconds + outcome.solve_seconds
     ));
-    report_energy(solution);
+    report_energy(scene, solution);
     report_modes(&solution.modes);
     for warning in &solution.warnings {
         say(format_args!("warning: {warning}"));
@@ -265,11 +265,12 @@ fn iterations_of_steps(work: &Statistics) -> String {
 }
 
 /// Nothing where no energies are recorded.
-fn report_energy(solution: &Solution) {
+fn report_energy(scene: &Scene, solution: &Solution) {
     if let (Some(first), Some(last)) = (solution.energies.first(), solution.energies.last()) {
         let (start, end) = (first.total(), last.total());
+        let what = if scene.load.is_empty() { "drift" } else { "change, with the work of the loads," };
         say(format_args!(
-            "total energy: {start:.6e} J at the start, {end:.6e} J at the end, drift {:.3e} J",
+            "total energy: {start:.6e} J at the start, {end:.6e} J at the end, {what} {:.3e} J",
             end - start
         ));
     }

@@ -9,28 +9,11 @@ use crate::rotation::{
 };
 
 /// Nodal positions and quaternions, the matrices A(P) beside them, and the multipliers of the joints.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
     quaternions: Vec<Vector4<f64>>,
     poses: Vec<Pose>,
     multipliers: Vec<f64>,
-}
-
-impl Clone for State {
-    fn clone(&self) -> Self {
-        Self {
-            quaternions: self.quaternions.clone(),
-            poses: self.poses.clone(),
-            multipliers: self.multipliers.clone(),
-        }
-    }
-
-    /// Into memory that is there already.
-    fn clone_from(&mut self, other: &Self) {
-        self.quaternions.clone_from(&other.quaternions);
-        self.poses.clone_from(&other.poses);
-        self.multipliers.clone_from(&other.multipliers);
-    }
 }
 
 impl State {
