@@ -137,22 +137,29 @@ fn report(
         let index = modes.len();
         let scaled = pair.stiffness();
         let (real, imaginary) = (scaled.re, scaled.im);
-        if imaginary > COMPLEX * scaled.norm() {
+        let is_complex = imaginary.abs() > COMPLEX * scaled.norm();
+        if is_complex && imaginary > 0.0 {
             solution.warnings.push(format!(
                 "modes {} and {} have complex frequencies, ω² = {:.6e} (1 ± {:.1e} i) rad²/s²: the \
                  discretisation's, they turn real as the mesh is refined",
                 index + 1,
                 index + 2,
                 real / (b * b),
-                imaginary / scaled.norm()
+                imaginary / real.abs()
             ));
-        }
-        if real < 0.0 {
+        } else if real < 0.0 && !is_complex && model.loaded() {
             solution.warnings.push(format!(
                 "the equilibrium is unstable: mode {} grows as exp({:.6e} t/s); its frequency is given as \
                  negative",
                 index + 1,
                 (-real).sqrt() / b
+            ));
+        } else if real < 0.0 && !is_complex {
+            // An unstressed rod is stable, so that this is the mesh's.
+            solution.warnings.push(format!(
+                "mode {} has ω² < 0 although nothing is loaded: the mesh is too coarse, use more elements; its \
+                 frequency is given as negative",
+                index + 1
             ));
         }
         let angular_frequency = real.abs().sqrt().copysign(real) / b;

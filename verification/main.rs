@@ -10,6 +10,7 @@ mod discrete_rod;
 mod formulas;
 mod harness;
 mod measure;
+mod motion;
 mod pieces;
 mod placement;
 mod states;

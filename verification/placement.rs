@@ -43,6 +43,14 @@ impl Placement {
             let q = self.rotation * before;
             rod.curve.orientation = [q.w, q.i, q.j, q.k];
         }
+        for body in &mut scene.body {
+            body.position = place(body.position);
+            body.velocity = turn(body.velocity);
+            let [w, x, y, z] = body.orientation;
+            let before = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+            let q = self.rotation * before;
+            body.orientation = [q.w, q.i, q.j, q.k];
+        }
         for joint in &mut scene.joint {
             joint.point = joint.point.map(place);
             joint.axis = joint.axis.map(turn);

@@ -2,10 +2,21 @@
 
 mod bend_45;
 mod cantilever;
+mod cantilever_motion;
 mod continuous;
 mod convergence_orders;
 mod derivatives;
+mod flexible_pendulum;
+mod free_flight;
+mod frequencies;
+mod frequencies_complex;
+mod frequencies_joined;
+mod frequencies_loaded;
+mod frequencies_meshes;
+mod load_courses;
 mod loads;
+mod massless_rod;
+mod mode_shapes;
 mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
@@ -13,6 +24,7 @@ mod princeton;
 mod probes;
 mod reactions;
 mod reference;
+mod right_angle_cantilever;
 mod roll_up;
 mod scenes;
 mod spring;
@@ -21,6 +33,7 @@ mod spring_comparison;
 mod spring_fit;
 mod spring_wire_end;
 mod spring_work;
+mod spun_ring;
 mod straight_to_helix;
 
 use crate::case::Case;
@@ -33,6 +46,19 @@ pub fn all() -> Vec<Case> {
         continuous::all(),
         convergence_orders::all(),
         derivatives::all(),
+        frequencies::all(),
+        frequencies_meshes::all(),
+        frequencies_joined::all(),
+        frequencies_loaded::all(),
+        mode_shapes::all(),
+        spun_ring::all(),
+        free_flight::all(),
+        load_courses::all(),
+        massless_rod::all(),
+        cantilever_motion::all(),
+        frequencies_complex::all(),
+        right_angle_cantilever::all(),
+        flexible_pendulum::all(),
         loads::all(),
         objectivity::all(),
         path_independence::all(),
