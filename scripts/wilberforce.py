@@ -13,7 +13,7 @@ Statics:  r' = A (G0 + C_g^-1 A^T n),  A' = A [k0 + C_k^-1 A^T m]x,  n = m_b g e
 Linearised, spatial rotation phi, (dr, phi, dn, dm)' :
     phi' = A C_k^-1 A^T (dm - phi x m),             dr' = phi x r' + A C_g^-1 A^T (dn - phi x n),
     dn'  = -w^2 rho A dr,                            dm' = -w^2 A rho I A^T phi - dr' x n - r' x dn.
-At the bob dn = -w^2 m_b u,  dm = -w^2 Theta theta - (dr - u) x n - (r - x_S) x dn;  at the clamp dr = phi = 0.
+At the bob dn = -w^2 m_b u,  dm = -w^2 A Theta A^T theta - (dr - u) x n - (r - x_S) x dn;  at the clamp dr = phi = 0.
 
 How the accuracy is judged: everything twice. Integration by Gauss collocation of order 12 with two step lengths; K also
 by differences of nonlinear solutions (1e-8), the loaded shape by DOP853; frequencies with rod mass by shooting
@@ -186,8 +186,15 @@ def tangent(x_s, r0, stages, n):
     return np.linalg.solve(t @ force, t @ pose)
 
 
-def frequencies(k):
-    return np.sqrt(eigh((k + k.T) / 2, np.diag(np.concatenate([[MASS] * 3, THETA])), eigvals_only=True))
+def mass_matrix(turn):
+    """Of the bob for (u, theta), both inertial: its inertia turns with it."""
+    m = np.diag([MASS] * 3 + [0.0] * 3)
+    m[3:, 3:] = turn @ np.diag(THETA) @ turn.T
+    return m
+
+
+def frequencies(k, turn):
+    return np.sqrt(eigh((k + k.T) / 2, mass_matrix(turn), eigvals_only=True))
 
 
 # ---------------------------------------------------------------- a: flexibility of the helix in closed form
@@ -205,9 +212,9 @@ def flexibility(steps):
 
 # ---------------------------------------------------------------- c: eigenvalues with the wire's inertia
 
-def determinant(w, stages, x_s, r0, n):
+def determinant(w, stages, x_s, r0, n, turn):
     pose, force = bob_columns(r0, x_s, n)
-    m = np.diag(np.concatenate([[MASS] * 3, THETA]))
+    m = mass_matrix(turn)
     t = transfer(stages, x_s, n, w * w)[:6] @ (pose - w * w * force @ m)
     return np.linalg.det(t / np.array([R] * 3 + [1] * 3)[:, None] * np.array([R] * 3 + [1] * 3))
 
@@ -234,7 +241,7 @@ def chebyshev(n_points):
     return (x + 1) / 2, 2 * d
 
 
-def dense(shape_at, x_s, r0, n, points, count):
+def dense(shape_at, x_s, r0, n, turn, points, count):
     """All equations at Chebyshev points, the bob's and the clamp's conditions in place of the ends: L y = w^2 M y."""
     xi, d = chebyshev(points)
     scale = np.array([R] * 3 + [1] * 3 + [CK[0] / R ** 2] * 3 + [CK[0] / R] * 3)
@@ -248,7 +255,7 @@ def dense(shape_at, x_s, r0, n, points, count):
     # unknowns at the bob: (u, theta) of the bob and y0; at xi = 0 replace the 12 rows by y0 = pose q - w^2 force M q with q from y0
     pose, force = bob_columns(r0, x_s, n)
     q = np.linalg.inv(pose[:6])  # q = q @ (dr, phi)
-    m = np.diag(np.concatenate([[MASS] * 3, THETA]))
+    m = mass_matrix(turn)
     # (dn, dm) = pose[6:] q + f-part;  f-part = -w^2 force[6:] m q
     rows_l, rows_r = np.zeros((6, size)), np.zeros((6, size))
     rows_l[:, 6:12], rows_l[:, :6] = np.eye(6), -pose[6:] @ q
@@ -275,12 +282,12 @@ def main():
     print("two quadratures differ by", np.abs(f1 / f2 - 1)[np.abs(f1) > 1e-12 * np.abs(f1).max()].max())
     print(repr(k_a))
     print("K_zz, K_tt, K_zt", *(repr(float(k_a[i])) for i in ((2, 2), (5, 5), (2, 5))))
-    w_a = frequencies(k_a)
+    w_a = frequencies(k_a, np.eye(3))
     print("massless frequencies", w_a)
     x_s, turn, stages, _ = shape(0.0, 60)
     r0 = helix(0)[0]
     k_t = tangent(x_s, r0, stages, np.zeros(3))
-    print("the linearised equations give K with a difference of", np.abs(k_t - k_a).max() / np.abs(k_a).max(), "frequencies", np.abs(frequencies(k_t) / w_a - 1).max())
+    print("the linearised equations give K with a difference of", np.abs(k_t - k_a).max() / np.abs(k_a).max(), "frequencies", np.abs(frequencies(k_t, np.eye(3)) / w_a - 1).max())
 
     print("\n== b. shape stretched by the weight")
     found = []
@@ -299,11 +306,11 @@ def main():
         print("  rotation vector of the bob", [float(v) for v in vector], "alpha (zyx)", repr(float(angle)),
               "wire end", [float(v) for v in r0])
         print("  largest asymmetry of K", np.abs(k - k.T).max(), "of", np.abs(k).max())
-        print("  massless frequencies", frequencies(k))
+        print("  massless frequencies", frequencies(k, turn))
     x_s, turn, stages, r0, k_b = found[1]
     print(repr(k_b))
     print("K: differences between the step lengths", np.abs(found[0][4] - k_b).max() / np.abs(k_b).max(), "frequencies",
-          np.abs(frequencies(found[0][4]) / frequencies(k_b) - 1).max())
+          np.abs(frequencies(found[0][4], turn) / frequencies(k_b, turn) - 1).max())
     # K by differences of the nonlinear problem: flexibility columns
     columns = []
     for i in range(6):
@@ -319,7 +326,7 @@ def main():
         columns.append((ends[0] - ends[1]) / (2 * size))
     k_d = np.linalg.inv(np.column_stack(columns))
     print("differences of nonlinear solutions: K", np.abs(k_d - k_b).max() / np.abs(k_b).max(), "frequencies",
-          np.abs(frequencies(k_d) / frequencies(k_b) - 1).max())
+          np.abs(frequencies(k_d, turn) / frequencies(k_b, turn) - 1).max())
 
     # shape once more, by DOP853 from the clamp
     def f(s, y, x_s=x_s):
@@ -339,11 +346,11 @@ def main():
     root = np.sqrt((wt - wz) ** 2 + eps ** 2 / (MASS * THETA[2]))
     bm = np.sqrt([(wz + wt - root) / 2, (wz + wt + root) / 2])
     print("Berg & Marshall", bm, "beat", 2 * np.pi / (bm[1] - bm[0]))
-    for name, kk in (("unloaded", k_a), ("stretched", k_b)):
-        w = frequencies(kk)
+    for name, kk, q in (("unloaded", k_a, np.eye(3)), ("stretched", k_b, turn)):
+        w = frequencies(kk, q)
         m2 = np.diag([MASS, THETA[2]])
         pair = np.sqrt(eigh(kk[np.ix_((2, 5), (2, 5))], m2, eigvals_only=True))
-        values, vectors = eigh((kk + kk.T) / 2, np.diag(np.concatenate([[MASS] * 3, THETA])))
+        values, vectors = eigh((kk + kk.T) / 2, mass_matrix(q))
         share = (vectors ** 2 * np.concatenate([[MASS] * 3, THETA])[:, None])
         two = [i for i in range(6) if share[2, i] + share[5, i] > 0.5]
         print(name, "pair of the full 6x6", w[two], "share of z and theta_z", (share[2] + share[5])[two], "beat",
@@ -353,9 +360,9 @@ def main():
     for name, load in (("unloaded", 0.0), ("stretched", 1.0)):
         n = load * WEIGHT * EZ
         if load:
-            problems = [(g[2], g[0], g[3], n) for g in found]
+            problems = [(g[2], g[0], g[3], n, g[1]) for g in found]
         else:
-            problems = [(shape(0.0, steps)[2], S0, helix(0)[0], n) for steps in (60, 90)]
+            problems = [(shape(0.0, steps)[2], S0, helix(0)[0], n, np.eye(3)) for steps in (60, 90)]
 
         def at_points(points):
             """The shape at Chebyshev points: the helix, or DOP853 from point to point."""

@@ -14,6 +14,7 @@ mod motion;
 mod pieces;
 mod placement;
 mod states;
+mod steps;
 mod tip;
 
 use libtest_mimic::{Arguments, Failed, Trial};

@@ -47,8 +47,8 @@ impl Placement {
             body.position = place(body.position);
             body.velocity = turn(body.velocity);
             let [w, x, y, z] = body.orientation;
-            let before = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
-            let q = self.rotation * before;
+            let before = nalgebra::Quaternion::new(w, x, y, z);
+            let q = self.rotation.quaternion() * before;
             body.orientation = [q.w, q.i, q.j, q.k];
         }
         for joint in &mut scene.joint {
@@ -69,5 +69,12 @@ impl Placement {
     /// A position of the placed scene in the original one.
     pub fn undo_position(&self, v: Vector3<f64>) -> Vector3<f64> {
         self.rotation.inverse() * (v - self.shift)
+    }
+
+    /// A quaternion of the placed scene in the original one.
+    pub fn undo_quaternion(&self, [w, x, y, z]: [f64; 4]) -> [f64; 4] {
+        let q =
+            self.rotation.inverse() * UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
+        [q.w, q.i, q.j, q.k]
     }
 }

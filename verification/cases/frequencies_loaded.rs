@@ -29,7 +29,7 @@ pub fn all() -> Vec<Case> {
         Case { name: "frequencies_loaded::axial_force", source: SOURCE, run: axial_force },
         Case {
             name: "frequencies_loaded::buckling",
-            source: "P (1 + P/GA − P/EA) = π²EI/(4L²), benchmarks of columns; linear law near it",
+            source: "P (1 + P/GA − P/EA) = π²EI/(4L²), column with stretch and shear; linear law near it",
             run: buckling,
         },
         Case { name: "frequencies_loaded::hanging_body", source: SOURCE, run: hanging_body },

@@ -1,21 +1,29 @@
 //! The cases, one file a problem.
 
 mod bend_45;
+mod body_chain;
 mod cantilever;
 mod cantilever_motion;
 mod continuous;
 mod convergence_orders;
+mod cut_rods;
 mod derivatives;
 mod flexible_pendulum;
+mod four_bar;
+mod free_bodies;
 mod free_flight;
 mod frequencies;
 mod frequencies_complex;
 mod frequencies_joined;
 mod frequencies_loaded;
 mod frequencies_meshes;
+mod heavy_top;
+mod hinged_beams;
 mod load_courses;
+mod loaded_frames;
 mod loads;
 mod massless_rod;
+mod mechanisms;
 mod mode_shapes;
 mod objectivity;
 mod path_independence;
@@ -35,6 +43,8 @@ mod spring_wire_end;
 mod spring_work;
 mod spun_ring;
 mod straight_to_helix;
+mod time_steps;
+mod wilberforce;
 
 use crate::case::Case;
 
@@ -42,24 +52,30 @@ use crate::case::Case;
 pub fn all() -> Vec<Case> {
     [
         bend_45::all(),
+        body_chain::all(),
         cantilever::all(),
+        cantilever_motion::all(),
         continuous::all(),
         convergence_orders::all(),
+        cut_rods::all(),
         derivatives::all(),
+        flexible_pendulum::all(),
+        four_bar::all(),
+        free_bodies::all(),
+        free_flight::all(),
         frequencies::all(),
-        frequencies_meshes::all(),
+        frequencies_complex::all(),
         frequencies_joined::all(),
         frequencies_loaded::all(),
-        mode_shapes::all(),
-        spun_ring::all(),
-        free_flight::all(),
+        frequencies_meshes::all(),
+        heavy_top::all(),
+        hinged_beams::all(),
         load_courses::all(),
-        massless_rod::all(),
-        cantilever_motion::all(),
-        frequencies_complex::all(),
-        right_angle_cantilever::all(),
-        flexible_pendulum::all(),
+        loaded_frames::all(),
         loads::all(),
+        massless_rod::all(),
+        mechanisms::all(),
+        mode_shapes::all(),
         objectivity::all(),
         path_independence::all(),
         petrov_galerkin::all(),
@@ -67,6 +83,7 @@ pub fn all() -> Vec<Case> {
         probes::all(),
         reactions::all(),
         reference::all(),
+        right_angle_cantilever::all(),
         roll_up::all(),
         scenes::all(),
         spring_axis::all(),
@@ -74,7 +91,10 @@ pub fn all() -> Vec<Case> {
         spring_fit::all(),
         spring_wire_end::all(),
         spring_work::all(),
+        spun_ring::all(),
         straight_to_helix::all(),
+        time_steps::all(),
+        wilberforce::all(),
     ]
     .into_iter()
     .flatten()
