@@ -31,9 +31,9 @@ pub fn all() -> Vec<Case> {
 }
 
 /// t, centre of mass, quaternion, force of the joint on the top.
-type Exact = (f64, [f64; 3], [f64; 4], [f64; 3]);
+pub type Exact = (f64, [f64; 3], [f64; 4], [f64; 3]);
 
-const TABLE: [Exact; 3] = [
+pub const TABLE: [Exact; 3] = [
     (
         0.5,
         [-0.702468297056586, -0.0211651847019233, -0.711400257651734],
@@ -57,7 +57,8 @@ const TABLE: [Exact; 3] = [
 /// Largest of the three steps [s]: the top turns by 0.075 rad in it.
 const STEP: f64 = 5e-4;
 
-fn scene(between: [&str; 2]) -> Scene {
+/// The top, its joint between the two in this order.
+pub fn scene(between: [&str; 2]) -> Scene {
     Scene {
         gravity: Some([0.0, 0.0, -9.81]),
         body: vec![Body {

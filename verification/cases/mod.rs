@@ -30,6 +30,7 @@ mod path_independence;
 mod petrov_galerkin;
 mod princeton;
 mod probes;
+mod radau;
 mod reactions;
 mod reference;
 mod right_angle_cantilever;
@@ -81,6 +82,7 @@ pub fn all() -> Vec<Case> {
         petrov_galerkin::all(),
         princeton::all(),
         probes::all(),
+        radau::all(),
         reactions::all(),
         reference::all(),
         right_angle_cantilever::all(),

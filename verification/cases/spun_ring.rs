@@ -62,7 +62,8 @@ const TABLE: [Instant; 2] = [
 const ELEMENTS: usize = 4;
 const DEGREE: usize = 5;
 
-fn scene(step: f64, elements: usize, degree: usize) -> Scene {
+/// The ring with its load and twelve probes.
+pub fn scene(step: f64, elements: usize, degree: usize) -> Scene {
     let section = Section::Custom {
         axial: 100.0,
         shear_y: 60.0,

@@ -14,6 +14,7 @@ mod energy;
 mod exact_motion;
 mod frequencies;
 mod quaternions;
+mod reference_integrator;
 mod shipped;
 mod stiffness;
 mod swing;
@@ -45,6 +46,7 @@ pub fn all() -> Vec<Case> {
         exact_motion::all(),
         frequencies::all(),
         quaternions::all(),
+        reference_integrator::all(),
         shipped::all(),
         stiffness::all(),
         work::all(),
