@@ -26,3 +26,15 @@ pub fn young_poisson(young_modulus: f64, poisson_ratio: f64) -> Material {
 pub fn young_shear(young_modulus: f64, shear_modulus: f64) -> Material {
     Material { young_modulus: Some(young_modulus), shear_modulus: Some(shear_modulus), ..Material::default() }
 }
+
+/// A section that is another in every direction, of a rod that bends by its own length under a newton.
+pub const UNEVEN_SECTION: Section = Section::Custom {
+    axial: 1e4,
+    shear_y: 4e3,
+    shear_z: 5e3,
+    torsion: 0.8,
+    bending_y: 1.0,
+    bending_z: 1.5,
+    mass_per_length: Some(0.5),
+    rotary_inertia: Some([3e-4, 1e-4, 2e-4]),
+};

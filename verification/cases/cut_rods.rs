@@ -8,13 +8,14 @@ use std::f64::consts::TAU;
 
 use cosserat::scene::{
     Basis, Curve, CurveShape, Dynamics, Joint, JointKind, Load, LoadKind, LoadTime, NamedTime, Rod, Scene,
-    Section, Statics,
+    Statics,
 };
 use cosserat::solution::Solution;
 use nalgebra::Vector3;
 
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::{clamp, load, probe, solve};
+use crate::pieces::UNEVEN_SECTION;
 use crate::placement::placements;
 use crate::steps::{distance, run};
 
@@ -27,16 +28,6 @@ pub fn all() -> Vec<Case> {
     ]
 }
 
-const SECTION: Section = Section::Custom {
-    axial: 1e4,
-    shear_y: 4e3,
-    shear_z: 5e3,
-    torsion: 0.8,
-    bending_y: 1.0,
-    bending_z: 1.5,
-    mass_per_length: Some(0.5),
-    rotary_inertia: Some([3e-4, 1e-4, 2e-4]),
-};
 const ELEMENTS: usize = 6;
 const DEGREE: usize = 3;
 const FORCE: [f64; 3] = [-0.4, 0.5, 0.8];
@@ -77,14 +68,15 @@ fn with_loads(tip: &str, rods: Vec<Rod>, joints: Vec<Joint>) -> Scene {
 }
 
 fn whole([curve, ..]: &Shapes) -> Scene {
-    let rod = Rod::new("rod", curve.clone(), SECTION, None, ELEMENTS, DEGREE);
+    let rod = Rod::new("rod", curve.clone(), UNEVEN_SECTION, None, ELEMENTS, DEGREE);
     let mut scene = with_loads("rod@1", vec![rod], vec![clamp("rod@0")]);
     scene.probe = [0.25, 0.5, 0.75, 1.0].map(|xi| probe(&format!("at{xi}"), &format!("rod@{xi}"))).to_vec();
     scene
 }
 
 fn halves([_, first, second]: &Shapes, backwards: bool) -> Scene {
-    let half = |name: &str, curve: &Curve| Rod::new(name, curve.clone(), SECTION, None, ELEMENTS / 2, DEGREE);
+    let half =
+        |name: &str, curve: &Curve| Rod::new(name, curve.clone(), UNEVEN_SECTION, None, ELEMENTS / 2, DEGREE);
     let (cut, tip) = if backwards { ("b@1", "b@0") } else { ("b@0", "b@1") };
     let weld = Joint {
         name: Some("weld".to_string()),

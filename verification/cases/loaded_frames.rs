@@ -1,12 +1,13 @@
 //! Closed loops of rods, and bodies that ride on rods, in statics.
 
 use cosserat::Model;
-use cosserat::scene::{CurveShape, Joint, JointKind, Load, LoadKind, Rod, Scene, Section, Statics};
+use cosserat::scene::{CurveShape, Joint, JointKind, Load, LoadKind, Rod, Scene, Statics};
 use cosserat::solution::Row;
 use nalgebra::Vector3;
 
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::{clamp, load, position, probe, solve};
+use crate::pieces::UNEVEN_SECTION;
 use crate::placement::{Placement, placements};
 use crate::steps::{body, joint};
 
@@ -28,21 +29,10 @@ pub fn all() -> Vec<Case> {
     ]
 }
 
-const SECTION: Section = Section::Custom {
-    axial: 1e4,
-    shear_y: 4e3,
-    shear_z: 5e3,
-    torsion: 0.8,
-    bending_y: 1.0,
-    bending_z: 1.5,
-    mass_per_length: Some(0.5),
-    rotary_inertia: Some([3e-4, 1e-4, 2e-4]),
-};
-
 fn line(name: &str, from: [f64; 3], to: [f64; 3], elements: usize, degree: usize) -> Rod {
     let shape =
         CurveShape::Line { length: None, from: Some(from), to: Some(to), normal: Some([0.0, 0.0, 1.0]) };
-    Rod::new(name, shape, SECTION, None, elements, degree)
+    Rod::new(name, shape, UNEVEN_SECTION, None, elements, degree)
 }
 
 fn rigid(between: [&str; 2]) -> Joint {
@@ -293,7 +283,7 @@ fn line_down() -> Rod {
         to: Some([0.0, 0.0, -2.0]),
         normal: Some([0.0, 1.0, 0.0]),
     };
-    Rod::new("rod", shape, SECTION, None, 4, 2)
+    Rod::new("rod", shape, UNEVEN_SECTION, None, 4, 2)
 }
 
 /// A second joint that holds what is held already is named and left out; the body stays and its weight is carried.

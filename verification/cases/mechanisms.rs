@@ -2,11 +2,12 @@
 //! named.
 
 use cosserat::Model;
-use cosserat::scene::{Body, CurveShape, Dynamics, Joint, JointKind, Rod, Scene, Section, Statics};
+use cosserat::scene::{Body, CurveShape, Dynamics, Joint, JointKind, Rod, Scene, Statics};
 use nalgebra::Vector3;
 
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::{clamp, load};
+use crate::pieces::UNEVEN_SECTION;
 use crate::placement::placements;
 use crate::steps::{body, joint};
 
@@ -25,17 +26,7 @@ fn rod() -> Rod {
         to: Some([0.6, 0.8, 0.0]),
         normal: Some([0.0, 0.0, 1.0]),
     };
-    let section = Section::Custom {
-        axial: 1e4,
-        shear_y: 4e3,
-        shear_z: 5e3,
-        torsion: 0.8,
-        bending_y: 1.0,
-        bending_z: 1.5,
-        mass_per_length: Some(0.5),
-        rotary_inertia: Some([3e-4, 1e-4, 2e-4]),
-    };
-    Rod::new("wire", shape, section, None, 2, 2)
+    Rod::new("wire", shape, UNEVEN_SECTION, None, 2, 2)
 }
 
 fn bob() -> Body {
