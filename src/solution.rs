@@ -133,7 +133,8 @@ pub enum SolveError {
     /// A time step did not reach the tolerance.
     #[error(
         "the step to time {time:?} s failed: after {iterations} iterations the residual is {residual:.3e}, the \
-         tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s"
+         tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s; a shorter \
+         `time_step` may pass"
     )]
     Step {
         /// The time that was tried [s].
