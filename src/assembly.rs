@@ -2,6 +2,7 @@
 
 mod blocks;
 mod coupled;
+mod power;
 mod residual;
 
 use nalgebra::{Matrix6, Vector3, Vector4, Vector6};

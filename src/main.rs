@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand};
 use cosserat::output::{self, Outcome};
 use cosserat::scene::{Analysis, Dynamics, Scene, SceneFile, Statics};
 use cosserat::solution::{Mode, Solution, SolveError, SolveFailure, Statistics};
-use cosserat::{Error, Model, dynamics, modes, statics};
+use cosserat::{Error, Model, SceneError, dynamics, modes, statics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Slender rods: statics, dynamics and modes of Cosserat rods described by a scene file.
@@ -137,6 +137,7 @@ fn load(arguments: &SceneArguments) -> Result<(Scene, Model), Error> {
 fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Failure> {
     let start = Instant::now();
     let (scene, model) = load(arguments)?;
+    refuse_overwriting(&arguments.path, &out)?;
     output::prepare(&out)?;
     let setup_seconds = start.elapsed().as_secs_f64();
 
@@ -188,6 +189,19 @@ fn work_so_far(scene: &Scene, done: f64, work: &Statistics) -> String {
             format!("{time:.3} of {end_time} s, {} steps, {iterations} iterations", work.increments)
         }
         _ => format!("{} increments, {iterations} iterations", work.increments),
+    }
+}
+
+/// The results hold the scene with its defaults as `scene.toml`; that must not be the user's own file.
+fn refuse_overwriting(scene: &Path, out: &Path) -> Result<(), Error> {
+    let written = out.join("scene.toml");
+    match (scene.canonicalize(), written.canonicalize()) {
+        (Ok(scene), Ok(written)) if scene == written => Err(Error::Scene(SceneError::new(
+            "--out",
+            format!("is the folder of {}, which the results would overwrite", scene.display()),
+            "another folder",
+        ))),
+        _ => Ok(()),
     }
 }
 

@@ -169,7 +169,7 @@ impl Model {
         model.reference.set_multiplier_count(multipliers);
         free_motion::refuse(&model, scene)?;
         if let Some(Analysis::Dynamics(_)) = scene.analysis() {
-            coupling::refuse_violating_velocities(&model)?;
+            coupling::refuse_violating_velocities(&model, scene)?;
         }
         let unresolved = model.unresolved(&model.reference, "undeformed shape");
         model.warnings.extend(unresolved);

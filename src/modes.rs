@@ -35,8 +35,10 @@ use krylov::{Operator, Pair};
 /// θ is known to rounding; ω² = (1/θ − 1)/b² is, relative to itself, if b² ω² of the lowest mode that is no rigid
 /// motion lies within this and its inverse.
 const WELL_SCALED: f64 = 1e-4;
+/// Least b² ω² of an unstable mode: the shift is at −1.
+const BELOW: f64 = -0.8;
 /// Times that b is chosen again.
-const ATTEMPTS: usize = 8;
+const ATTEMPTS: usize = 12;
 /// A pair whose Im ω² is larger, relative to |ω²|, is reported.
 const COMPLEX: f64 = 1e-8;
 
@@ -90,16 +92,37 @@ fn frequencies(
     let free =
         if model.loaded() { Vec::new() } else { free_motions(model).map_err(|_| StopReason::Singular)? };
     let mut b = natural_time(model);
+    let mut found: Option<(f64, Vec<Pair>)> = None;
     for attempt in 1.. {
         solution.statistics.factorizations += 1;
-        operator.factorize(b)?;
-        let pairs = krylov::largest(&mut operator, &free, count.saturating_sub(free.len()).max(1))?;
-        let lowest = pairs.iter().map(|pair| pair.stiffness().norm()).reduce(f64::min);
-        let well_scaled = lowest.is_none_or(|x| (WELL_SCALED..1.0 / WELL_SCALED).contains(&x));
+        let wanted = count.saturating_sub(free.len()).max(1);
+        let searched = operator.factorize(b).and_then(|()| krylov::largest(&mut operator, &free, wanted));
+        let pairs = match (searched, found.take()) {
+            (Ok(pairs), _) => pairs,
+            // Another b would only have made them more precise.
+            (Err(_), Some((b, pairs))) => {
+                return Ok(report(model, state, b, (&free, &pairs), count, solution));
+            }
+            (Err(reason), None) => return Err(reason),
+        };
+        // Of an unstable equilibrium all modes are found in order only if the shift −1/b² lies below the lowest ω².
+        let most_negative = pairs.iter().map(|pair| pair.stiffness().re).fold(0.0, f64::min);
+        let lowest = pairs.iter().map(|pair| pair.stiffness().norm()).reduce(f64::min).filter(|x| *x > 0.0);
+        let well_scaled = if most_negative < 0.0 {
+            most_negative > BELOW
+        } else {
+            lowest.is_none_or(|x| (WELL_SCALED..1.0 / WELL_SCALED).contains(&x))
+        };
         if attempt == ATTEMPTS || well_scaled {
             return Ok(report(model, state, b, (&free, &pairs), count, solution));
         }
-        b /= lowest.map_or(1.0, f64::sqrt);
+        let factor = if most_negative < 0.0 {
+            (0.5 * BELOW / most_negative).sqrt()
+        } else {
+            lowest.map_or(1.0, |x| 1.0 / x.sqrt())
+        };
+        found = Some((b, pairs));
+        b *= factor;
     }
     Ok(Vec::new())
 }
@@ -133,6 +156,7 @@ fn report(
     }
     let free = free.iter().map(|vector| Mode { angular_frequency: 0.0, shape: shape(model, state, vector) });
     let mut modes: Vec<Mode> = free.take(count).collect();
+    let mut unstable = Vec::new();
     for pair in pairs.iter().take(count - modes.len()) {
         let index = modes.len();
         let scaled = pair.stiffness();
@@ -147,23 +171,26 @@ fn report(
                 real / (b * b),
                 imaginary / real.abs()
             ));
-        } else if real < 0.0 && !is_complex && model.loaded() {
-            solution.warnings.push(format!(
-                "the equilibrium is unstable: mode {} grows as exp({:.6e} t/s); its frequency is given as \
-                 negative",
-                index + 1,
-                (-real).sqrt() / b
-            ));
-        } else if real < 0.0 && !is_complex {
-            // An unstressed rod is stable, so that this is the mesh's.
-            solution.warnings.push(format!(
-                "mode {} has ω² < 0 although nothing is loaded: the mesh is too coarse, use more elements; its \
-                 frequency is given as negative",
-                index + 1
-            ));
+        }
+        if real < 0.0 && !is_complex {
+            unstable.push((index + 1).to_string());
         }
         let angular_frequency = real.abs().sqrt().copysign(real) / b;
         modes.push(Mode { angular_frequency, shape: shape(model, state, &pair.vector) });
+    }
+    if !unstable.is_empty() {
+        // An unstressed rod is stable: without loads this is the mesh's.
+        let why = if model.loaded() {
+            "the equilibrium is unstable"
+        } else {
+            "nothing is loaded, so the mesh is too coarse, use more elements"
+        };
+        let fastest = modes.iter().map(|mode| -mode.angular_frequency).fold(0.0, f64::max);
+        solution.warnings.push(format!(
+            "ω² < 0 for mode {}: {why}; the frequency is given as negative, and the fastest grows as \
+             exp({fastest:.6e} t/s)",
+            unstable.join(", ")
+        ));
     }
     modes
 }

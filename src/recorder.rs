@@ -1,5 +1,7 @@
 //! Rows and shapes of a solution while it grows.
 
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 use crate::assembly::Workspace;
@@ -142,13 +144,40 @@ fn euler_zyx(a: &Matrix3<f64>) -> [f64; 3] {
     [(-a.m12).atan2(a.m11), a.m13.atan2(cosine), (-a.m23).atan2(a.m33)]
 }
 
-/// Adds whole turns to come nearest to the row before.
+/// Of all angles of the same rotation those nearest to the row before: (α + π, π − β, γ + π) is the same as
+/// (α, β, γ), and so are whole turns of each.
 fn unwrapped(angles: [f64; 3], before: Option<&ProbePose>) -> [f64; 3] {
     let Some(before) = before.and_then(|pose| pose.angles) else {
         return angles;
     };
-    std::array::from_fn(|k| {
-        let turn = std::f64::consts::TAU;
-        angles[k] + turn * ((before[k] - angles[k]) / turn).round()
-    })
+    let [alpha, beta, gamma] = angles;
+    let nearest = |angles: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|k| angles[k] + TAU * ((before[k] - angles[k]) / TAU).round())
+    };
+    let way = |angles: &[f64; 3]| -> f64 { angles.iter().zip(&before).map(|(a, b)| (a - b).abs()).sum() };
+    let (first, second) = (nearest(angles), nearest([alpha + PI, PI - beta, gamma + PI]));
+    if way(&second) < way(&first) { second } else { first }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A turn about e_y through ±90°, where the plain angles fold back.
+    #[test]
+    fn angles_go_on_where_the_plain_ones_fold() {
+        let mut before: Option<ProbePose> = None;
+        for k in 0..200 {
+            let beta = 0.05 * f64::from(k);
+            let rotation =
+                Matrix3::new(beta.cos(), 0.0, beta.sin(), 0.0, 1.0, 0.0, -beta.sin(), 0.0, beta.cos());
+            let angles = unwrapped(euler_zyx(&rotation), before.as_ref());
+            assert!(angles[0].abs() < 1e-9 && (angles[1] - beta).abs() < 1e-9 && angles[2].abs() < 1e-9);
+            before = Some(ProbePose {
+                position: [0.0; 3],
+                quaternion: [1.0, 0.0, 0.0, 0.0],
+                angles: Some(angles),
+            });
+        }
+    }
 }

@@ -199,6 +199,15 @@ pub trait RodElements: Debug + Send + Sync {
     /// of every element in the order of [`Target::Blocks`]; not at all without inertia.
     fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor);
 
+    /// Σ f·u of the line loads [W].
+    fn line_load_power(
+        &self,
+        poses: &[Pose],
+        properties: &RodProperties,
+        line_load: &LineLoad,
+        velocities: &[Velocity],
+    ) -> Result<f64, usize>;
+
     /// ½ uᵀ M u [J].
     fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64;
 

@@ -202,6 +202,9 @@ pub enum StopReason {
         /// Index of the joint.
         joint: usize,
     },
+    /// Energy appears that no load has brought.
+    #[error("kinetic and strain energy exceed the work of all loads more than tenfold")]
+    Energy,
     /// Neighbouring nodes are half a turn apart, where the relative rotation has no logarithm.
     #[error("element {element} of rod.{rod} is turned by half a turn between its nodes")]
     HalfTurn {

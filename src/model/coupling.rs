@@ -220,7 +220,7 @@ fn jacobian_rows(
 }
 
 /// Refuses velocities at the start that a joint cannot have: ‖G u‖ against the velocities themselves.
-pub(crate) fn refuse_violating_velocities(model: &Model) -> Result<(), SceneError> {
+pub(crate) fn refuse_violating_velocities(model: &Model, scene: &Scene) -> Result<(), SceneError> {
     let velocities = model.initial_velocities();
     for (index, joint) in model.joints.iter().enumerate() {
         let super::JointModel::Coupled(coupling) = joint else { continue };
@@ -246,7 +246,8 @@ pub(crate) fn refuse_violating_velocities(model: &Model) -> Result<(), SceneErro
             return Err(SceneError::new(
                 format!("joint.{index}"),
                 format!(
-                    "is violated by the velocities at the start: its parts separate by {violation:.3e} {unit}"
+                    "is `{}`, which the velocities at the start violate: its parts separate by {violation:.3e} {unit}",
+                    scene.joint_name(index)
                 ),
                 "velocities and angular velocities of the joined bodies that agree at the joint; rods start at rest",
             ));

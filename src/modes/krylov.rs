@@ -44,6 +44,8 @@ const FOUND: f64 = 1e-9;
 const FLOOR: f64 = 1e-4;
 /// θ below this part of the largest is rounding: an infinite frequency.
 const INFINITE: f64 = 1e-13;
+/// A negative θ below this part of the largest is rounding, too: taken seriously it would be a violent instability.
+const NEGATIVE: f64 = 1e-9;
 /// Blocks after which the search is given up.
 const MOST_BLOCKS: usize = 30;
 
@@ -155,7 +157,9 @@ fn project(
         loads.iter().map(|load| images.iter().map(|image| dot(load, image)).collect()).collect();
     let mut small = eigenpairs(&matrix).map_err(|_| StopReason::Singular)?;
     let largest = small.iter().map(|(value, _)| value.norm()).fold(0.0, f64::max);
-    small.retain(|(value, _)| value.norm() > INFINITE * largest);
+    small.retain(|(value, _)| {
+        value.norm() > if value.re > 0.0 { INFINITE * largest } else { NEGATIVE * largest }
+    });
     // By rising Re ω²; of a complex pair first the one with the positive imaginary part.
     let key = |value: &Complex<f64>| value.inv();
     small.sort_by(|(a, _), (b, _)| {

@@ -26,12 +26,14 @@ pub struct Outcome {
 }
 
 /// Creates the folder for the results if it is absent, so that a folder that cannot be made is known
-/// before anything is solved.
+/// before anything is solved, and removes the summary of an earlier run: should this one be killed,
+/// nothing must say that it was solved.
 ///
 /// # Errors
-/// [`Error::File`] if it cannot be created.
+/// [`Error::File`] if it cannot be created, or the summary not removed.
 pub fn prepare(dir: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(dir).map_err(|source| cannot_write(dir, source))
+    std::fs::create_dir_all(dir).map_err(|source| cannot_write(dir, source))?;
+    remove(dir.join("summary.json"))
 }
 
 /// A solution with the scene it belongs to.

@@ -275,6 +275,26 @@ where
         }
     }
 
+    fn line_load_power(
+        &self,
+        poses: &[Pose],
+        properties: &RodProperties,
+        line_load: &LineLoad,
+        velocities: &[Velocity],
+    ) -> Result<f64, usize> {
+        let points = self.full_rule.len();
+        let mut power = 0.0;
+        for (e, jacobians) in properties.full_jacobians.chunks_exact(points).enumerate() {
+            let mut element = ElementForce::default();
+            line_load_force::<N, I>(self.of(e, poses), &self.full_rule, jacobians, line_load, &mut element)
+                .map_err(|_| e)?;
+            for (i, u) in self.of(e, velocities).iter().enumerate() {
+                power += element.force[i].dot(&u.translation) + element.moment[i].dot(&u.rotation);
+            }
+        }
+        Ok(power)
+    }
+
     fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64 {
         let Some(inertia) = &properties.inertia else { return 0.0 };
         let of_element = |e| {

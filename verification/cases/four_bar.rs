@@ -55,7 +55,8 @@ const JOINTS: [(&str, [&str; 2], [f64; 3]); 4] = [
 ];
 
 /// With the joints in the order given.
-fn scene(order: [usize; 4]) -> Scene {
+/// The loop, its joints in this order.
+pub fn scene(order: [usize; 4]) -> Scene {
     let joint = |index: usize| {
         let (name, between, point) = JOINTS[index];
         Joint { axis: Some(NORMAL), ..joint(name, JointKind::Revolute, between, point) }

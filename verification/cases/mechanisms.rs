@@ -120,12 +120,12 @@ fn refusals() -> Vec<Refusal> {
                 vec![wrong.clone()],
                 vec![joint("pivot", Spherical, ["ground", "bob"], [0.0; 3])],
             ),
-            &["joint.0", "violated by the velocities at the start"],
+            &["joint.0", "which the velocities at the start violate"],
         ),
         (
             "a velocity that leaves a rod at rest",
             moving(vec![rod()], vec![wrong], vec![clamp("wire@0"), join(Rigid, ["wire@1", "bob"], None)]),
-            &["joint.1", "violated by the velocities at the start"],
+            &["joint.1", "which the velocities at the start violate"],
         ),
         (
             "an angular velocity across a hinge",

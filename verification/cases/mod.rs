@@ -25,6 +25,7 @@ mod loads;
 mod massless_rod;
 mod mechanisms;
 mod mode_shapes;
+mod motion_details;
 mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
@@ -78,6 +79,7 @@ pub fn all() -> Vec<Case> {
         mechanisms::all(),
         mode_shapes::all(),
         objectivity::all(),
+        motion_details::all(),
         path_independence::all(),
         petrov_galerkin::all(),
         princeton::all(),

@@ -1,0 +1,293 @@
+//! What is easily overlooked in a motion: held nodes, the last step, default points, the zero of energies, loads at the
+//! stages, closed loops far away and near a dead point, and energy that comes from nowhere.
+
+use crate::case::{Case, Checks, Kind, Outcome};
+use crate::cases::frequencies::{LENGTH, steel};
+use crate::measure::{clamp, load, probe};
+use crate::motion::{follow, place, vibrate};
+use crate::pieces::{circle, line};
+use crate::placement::Placement;
+use crate::steps::{body, run};
+use cosserat::Model;
+use cosserat::scene::{
+    Body, Curve, CurveShape, Dynamics, Joint, JointKind, LoadKind, LoadTime, Method, Modes, NamedTime, Rod,
+    Scene,
+};
+use cosserat::solution::{SolveError, StopReason};
+use nalgebra::{UnitQuaternion, Vector3};
+
+pub fn all() -> Vec<Case> {
+    vec![
+        Case { name: "motion_details::held", source: "the joint holds the node", run: held },
+        Case {
+            name: "motion_details::last_step",
+            source: "free fall; the end time is a row",
+            run: last_step,
+        },
+        Case { name: "motion_details::points", source: "the default is a point like any other", run: points },
+        Case { name: "motion_details::gravity", source: "m g z", run: gravity },
+        Case {
+            name: "motion_details::radau_loads",
+            source: "a cubic in time, which the method integrates exactly",
+            run: radau_loads,
+        },
+        Case { name: "motion_details::pair", source: "two modes are two motions", run: pair },
+        Case { name: "motion_details::runaway", source: "energy has a source", run: runaway },
+        Case {
+            name: "motion_details::turned",
+            source: "the loop has the same redundant constraints everywhere",
+            run: turned,
+        },
+    ]
+}
+
+fn held(checks: &mut Checks) -> Outcome {
+    for kind in [JointKind::Rigid, JointKind::Spherical] {
+        let mut hold = clamp("rod@0");
+        hold.kind = kind;
+        let scene = Scene {
+            gravity: Some([0.3, -0.2, -9.81]),
+            rod: vec![Rod::new("rod", line(LENGTH), circle(0.01), Some(steel()), 4, 2)],
+            joint: vec![hold],
+            probe: vec![probe("held", "rod@0")],
+            dynamics: Some(Dynamics::new(0.1, 1e-3)),
+            ..Scene::default()
+        };
+        let run = follow(&scene)?;
+        let way = (0..run.rows.len())
+            .map(|row| (place(&run, row, 0) - place(&run, 0, 0)).norm())
+            .fold(0.0, f64::max);
+        checks.below(
+            Kind::Invariant,
+            format!("way of the held node, {kind:?}"),
+            way,
+            1e-13,
+            "the joint holds it",
+        );
+    }
+    Ok(())
+}
+
+fn falling(end: f64, step: f64) -> Scene {
+    Scene {
+        gravity: Some([0.0, 0.0, -9.81]),
+        body: vec![Body { velocity: [1.0, 0.0, 0.0], ..body("bob", 2.0, [1.0, 1.5, 2.0], [0.5, -1.0, 3.0]) }],
+        probe: vec![probe("bob", "bob")],
+        dynamics: Some(Dynamics::new(end, step)),
+        ..Scene::default()
+    }
+}
+
+fn last_step(checks: &mut Checks) -> Outcome {
+    for (end, step, rows) in [(1.0, 0.3, 5.0), (1.0, 1.0 / 49.0, 50.0)] {
+        let run = run(&falling(end, step))?;
+        let last = run.rows.last().ok_or("no rows")?;
+        checks.absolute(
+            Kind::Invariant,
+            format!("rows, step {step}"),
+            (run.rows.len() as f64, rows),
+            0.0,
+            "the start, whole steps, and a shorter last one only where it is one",
+        );
+        checks.absolute(
+            Kind::Invariant,
+            format!("last time, step {step}"),
+            (last.parameter, end),
+            0.0,
+            "the end time itself",
+        );
+        checks.absolute(
+            Kind::ClosedForm,
+            format!("way, step {step}"),
+            (last.probes[0].position[0], 0.5 + end),
+            1e-12,
+            "a constant velocity is integrated exactly, to the rounding of 50 steps",
+        );
+    }
+    Ok(())
+}
+
+fn points(checks: &mut Checks) -> Outcome {
+    let scene = |point: Option<[f64; 3]>| Scene {
+        gravity: Some([0.0, 0.0, -9.81]),
+        body: vec![
+            body("a", 1.0, [0.1, 0.2, 0.3], [0.0; 3]),
+            body("b", 2.0, [0.3, 0.2, 0.4], [1.0, 0.5, -0.2]),
+        ],
+        joint: vec![
+            Joint {
+                name: None,
+                kind: JointKind::Spherical,
+                between: ["ground".into(), "a".into()],
+                point: Some([0.0, 0.0, 0.5]),
+                axis: None,
+            },
+            Joint {
+                name: None,
+                kind: JointKind::Spherical,
+                between: ["a".into(), "b".into()],
+                point,
+                axis: None,
+            },
+        ],
+        probe: vec![probe("a", "a"), probe("b", "b")],
+        dynamics: Some(Dynamics::new(0.2, 1e-2)),
+        ..Scene::default()
+    };
+    let (default, given) = (run(&scene(None))?, run(&scene(Some([1.0, 0.5, -0.2])))?);
+    for k in 0..2 {
+        let at = |run| Vector3::from(place(run, 20, k));
+        checks.vector(
+            Kind::Invariant,
+            format!("body {k}"),
+            (at(&default).into(), at(&given).into()),
+            1e-13,
+            "the same point: rounding of 20 steps",
+        );
+    }
+    Ok(())
+}
+
+fn gravity(checks: &mut Checks) -> Outcome {
+    let mut scene = falling(0.1, 0.1);
+    let mut curve: Curve = line(LENGTH).into();
+    curve.origin = [1.0, 2.0, 5.0];
+    scene.rod = vec![Rod::new("rod", curve, circle(0.01), Some(steel()), 2, 2)];
+    let mass = std::f64::consts::PI / 4.0 * 1e-4 * LENGTH * steel().density.ok_or("no density")?;
+    let found = run(&scene)?.energies[0].gravity;
+    checks.relative(
+        Kind::ClosedForm,
+        "m g z",
+        (found, 9.81 * (2.0 * 3.0 + mass * 5.0)),
+        1e-13,
+        "one product for each; the mass of the rod by quadrature, exact on a line",
+    );
+    Ok(())
+}
+
+fn radau_loads(checks: &mut Checks) -> Outcome {
+    let mut scene = falling(1.0, 0.25);
+    scene.gravity = None;
+    let mut push = load(LoadKind::Force, "bob", [2.0, -1.0, 0.5]);
+    push.time = Some(LoadTime::Named(NamedTime::Ramp));
+    scene.load = vec![push];
+    if let Some(d) = &mut scene.dynamics {
+        d.method = Method::Radau;
+    }
+    let run = run(&scene)?;
+    let found = Vector3::from(place(&run, 4, 0)) - Vector3::new(1.5, -1.0, 3.0);
+    checks.vector(
+        Kind::ClosedForm,
+        "way",
+        (found.into(), (Vector3::new(2.0, -1.0, 0.5) / 12.0).into()),
+        1e-13,
+        "stage order 3: a cubic way to rounding",
+    );
+    Ok(())
+}
+
+/// The shipped pendulum with ten times its step: Newton converges, to nonsense.
+fn runaway(checks: &mut Checks) -> Outcome {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/flexible_pendulum.toml");
+    let mut scene = Scene::from_file(path)?;
+    let Some(options) = &mut scene.dynamics else { return Err("the scene has no [dynamics]".into()) };
+    options.time_step = 0.1;
+    let options = options.clone();
+    let outcome = cosserat::dynamics::solve(&Model::new(&scene)?, &options, &mut |_, _| ());
+    let stopped = matches!(
+        &outcome,
+        Err(failure) if matches!(failure.error, SolveError::Step { reason: StopReason::Energy, .. })
+    );
+    checks.absolute(
+        Kind::Invariant,
+        "stopped for its energy",
+        (f64::from(u8::from(stopped)), 1.0),
+        0.0,
+        "7 J of weight cannot bring the 4e7 J that this step would end with",
+    );
+    Ok(())
+}
+
+fn pair(checks: &mut Checks) -> Outcome {
+    let rod = Rod::new(
+        "rod",
+        CurveShape::Helix { coils: 2.0, radius: 1.0, pitch: 0.5, phase: 0.0 },
+        circle(0.1),
+        Some(steel()),
+        16,
+        1,
+    );
+    let scene = Scene {
+        rod: vec![rod],
+        joint: vec![clamp("rod@0")],
+        probe: ["rod@0.25", "rod@0.5", "rod@1"].map(|on| probe(&on.replace('@', " "), on)).to_vec(),
+        modes: Some(Modes { count: 12 }),
+        ..Scene::default()
+    };
+    let modes = vibrate(&scene)?.modes;
+    for pair in modes.windows(2) {
+        let d = pair[0]
+            .shape
+            .iter()
+            .flatten()
+            .zip(pair[1].shape.iter().flatten())
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        checks.above(
+            Kind::Invariant,
+            "neighbours differ",
+            d,
+            1e-6,
+            "also where they are a complex pair; equal ones would differ by rounding",
+        );
+    }
+    Ok(())
+}
+
+fn turned(checks: &mut Checks) -> Outcome {
+    let far = Placement {
+        name: "far",
+        rotation: UnitQuaternion::from_scaled_axis(Vector3::new(0.7, -1.9, 0.4)),
+        shift: Vector3::new(3e4, -2e4, 1e4),
+    };
+    let model = Model::new(&far.apply(&crate::cases::four_bar::scene([0, 1, 2, 3])))?;
+    let named = matches!(model.warnings(), [w] if w.contains("3 of the 5"));
+    checks.absolute(
+        Kind::Invariant,
+        "three of five constraints dropped, far away",
+        (f64::from(u8::from(named)), 1.0),
+        0.0,
+        "a plane loop",
+    );
+    let hinge = |name, between, x: f64, y: f64| Joint {
+        axis: Some([0.0, 0.0, 1.0]),
+        ..crate::steps::joint(name, JointKind::Revolute, between, [x, y, 0.0])
+    };
+    // Bars of 1 at 1e-3 rad from line.
+    let (c, s) = (1e-3_f64.cos(), 1e-3_f64.sin());
+    let scene = Scene {
+        body: vec![
+            body("bar1", 1.0, [0.01, 0.1, 0.1], [0.5 * c, 0.5 * s, 0.0]),
+            body("bar2", 2.0, [0.01, 0.7, 0.7], [1.0 + c, s, 0.0]),
+            body("bar3", 1.0, [0.01, 0.1, 0.1], [2.0 + 0.5 * c, 0.5 * s, 0.0]),
+        ],
+        joint: vec![
+            hinge("A", ["ground", "bar1"], 0.0, 0.0),
+            hinge("B", ["bar1", "bar2"], c, s),
+            hinge("C", ["bar2", "bar3"], 2.0 + c, s),
+            hinge("D", ["ground", "bar3"], 2.0, 0.0),
+        ],
+        dynamics: Some(Dynamics::new(0.5, 1e-3)),
+        ..Scene::default()
+    };
+    let model = Model::new(&scene)?;
+    let named = matches!(model.warnings(), [w] if w.contains("3 of the 5"));
+    checks.absolute(
+        Kind::Invariant,
+        "three of five constraints dropped, near the line",
+        (f64::from(u8::from(named)), 1.0),
+        0.0,
+        "1e-3 rad from the dead point the others are independent",
+    );
+    Ok(())
+}
