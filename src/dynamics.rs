@@ -1,6 +1,7 @@
 //! The motion in time: M u̇ + fᵍʸʳ(u) = fⁱⁿᵗ(q) + fᵉˣᵗ(t, q) + Gᵀ(q) λ, q̇ = B(q) u, g(q) = 0, from the reference with
 //! the velocities given, eq. (10) to (15). The gyroscopic force has the sign that conserves angular momentum.
 
+mod balance;
 mod generalized_alpha;
 mod radau;
 mod start;
@@ -14,6 +15,7 @@ use crate::recorder::Recorder;
 use crate::scene::{Coordinates, Dynamics, Method};
 use crate::solution::{Energies, Solution, SolveError, SolveFailure, Statistics, StopReason};
 use crate::state::State;
+use balance::Balance;
 use generalized_alpha::GeneralizedAlpha;
 use radau::Radau;
 
@@ -43,12 +45,12 @@ pub fn solve(
         recorder: Recorder::new(model, options.end_time),
         time: 0.0,
         reached: model.reference.clone(),
-        balance: Balance::default(),
+        balance: None,
     };
     let outcome = run.follow(options, progress);
     let mut solution = run.recorder.finish(model, &run.reached, run.statistics);
     solution.warnings.extend(joint_noise(model, options, &solution));
-    solution.warnings.extend(run.balance.warning());
+    solution.warnings.extend(run.balance.and_then(|balance| balance.warning()));
     match outcome {
         Ok(()) => Ok(solution),
         Err(error) => Err(Box::new(SolveFailure { error, partial: solution })),
@@ -123,60 +125,8 @@ struct Run<'a> {
     /// The last time that was reached, and the state there: Newton's last iterate may be anywhere.
     time: f64,
     reached: State,
-    balance: Balance,
-}
-
-/// Kinetic and strain energy against the work of gravity and all loads, by the trapezoidal rule. What integration
-/// makes of energy is small where the step resolves the motion; where it grows out of proportion the answer is none.
-#[derive(Default)]
-struct Balance {
-    /// Power at the last time [W].
-    power: f64,
-    /// Kinetic and strain energy at the start, less what the loads have brought since [J].
-    from_loads: f64,
-    /// ∫ |power| dt and the energy of the start: what there was to go round [J].
-    turnover: f64,
-    /// The largest surplus, and the turnover then [J].
-    worst: (f64, f64),
-}
-
-/// A surplus of this part of the turnover is worth a warning,
-const SURPLUS: f64 = 0.1;
-/// and of this one the end.
-const RUNAWAY: f64 = 10.0;
-
-impl Balance {
-    fn start(&mut self, power: f64, energies: &Energies) {
-        let energy = energies.kinetic + energies.strain;
-        *self = Self { power, from_loads: energy, turnover: energy, worst: (0.0, 0.0) };
-    }
-
-    /// After a step; an error where energy runs away.
-    fn add(&mut self, length: f64, power: f64, energies: &Energies) -> Result<(), StopReason> {
-        self.from_loads += 0.5 * length * (self.power + power);
-        self.turnover += 0.5 * length * (self.power.abs() + power.abs());
-        self.power = power;
-        let surplus = energies.kinetic + energies.strain - self.from_loads;
-        if surplus * self.worst.1.max(f64::MIN_POSITIVE) > self.worst.0 * self.turnover {
-            self.worst = (surplus, self.turnover);
-        }
-        // At rest both are rounding.
-        if surplus > RUNAWAY * self.turnover && surplus > f64::EPSILON {
-            Err(StopReason::Energy)
-        } else {
-            Ok(())
-        }
-    }
-
-    fn warning(&self) -> Option<String> {
-        let (surplus, turnover) = self.worst;
-        (surplus > SURPLUS * turnover && surplus > f64::EPSILON).then(|| {
-            format!(
-                "kinetic and strain energy exceed what gravity and the loads have brought by up to {surplus:.1e} J, \
-                 where {turnover:.1e} J had gone round: the time step is too long for this motion"
-            )
-        })
-    }
+    /// From the start on.
+    balance: Option<Balance>,
 }
 
 impl Run<'_> {
@@ -187,10 +137,10 @@ impl Run<'_> {
     ) -> Result<(), SolveError> {
         let step = options.time_step;
         let started = start::accelerate(&mut self.motion, 0.0, step);
-        let recorded = started.and_then(|()| self.record(0.0)).and_then(|()| {
-            let power = self.power(0.0)?;
-            self.balance.start(power, &self.motion.energies());
-            Ok(())
+        let recorded = started.and_then(|()| {
+            let (power, energies) = (self.power(0.0)?, self.motion.energies());
+            self.balance = Some(Balance::new(self.motion.model, step, power, &energies));
+            self.record(0.0, energies)
         });
         recorded.map_err(|reason| SolveError::InitialAcceleration { reason })?;
         let mut integrator: Box<dyn Integrator> = match options.method {
@@ -210,11 +160,11 @@ impl Run<'_> {
                 .step(&mut self.motion, time, length, &self.newton, &mut self.statistics)
                 .and_then(|converged| {
                     let Converged { iterations, residual } = converged;
-                    self.check_dependent()
-                        .and_then(|()| self.power(time))
-                        .and_then(|power| self.balance.add(length, power, &self.motion.energies()))
-                        .and_then(|()| self.record(time))
-                        .map_err(|reason| NotConverged { iterations, residual, reason })?;
+                    self.accept(time, length).map_err(|reason| NotConverged {
+                        iterations,
+                        residual,
+                        reason,
+                    })?;
                     Ok(converged)
                 })
                 .map_err(|stop| self.error(time, &stop))?;
@@ -228,14 +178,24 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Checks what a step that converged has led to, and records it.
+    fn accept(&mut self, time: f64, length: f64) -> Result<(), StopReason> {
+        self.check_dependent()?;
+        let (power, energies) = (self.power(time)?, self.motion.energies());
+        if let Some(balance) = &mut self.balance {
+            balance.add(length, power, &energies)?;
+        }
+        self.record(time, energies)
+    }
+
     fn power(&self, time: f64) -> Result<f64, StopReason> {
         let Moving { model, state, motion, work } = &self.motion;
         work.load_power(model, state, &level(time), &motion.velocities)
     }
 
-    fn record(&mut self, time: f64) -> Result<(), StopReason> {
+    fn record(&mut self, time: f64, energies: Energies) -> Result<(), StopReason> {
         self.recorder.record(self.motion.model, time, &self.motion.state, &self.motion.work)?;
-        self.recorder.record_energies(self.motion.energies());
+        self.recorder.record_energies(energies);
         Ok(())
     }
 

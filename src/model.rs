@@ -291,7 +291,7 @@ impl Model {
         let (origin, node) = (Vector3::from(body.position), self.reference.poses().len());
         self.reference.push(Vector3::zeros(), quaternion);
         let weight = self.gravity * mass.mass;
-        let loads = if scene.gravity.is_some() {
+        let loads = if self.gravity != Vector3::zeros() {
             vec![PointLoad::weight(node, weight, Course::default_for(scene))]
         } else {
             Vec::new()

@@ -1,6 +1,7 @@
 //! The elements of one rod, with degree and interpolation chosen once per rod; what they are given and what they fill.
 
 mod elements;
+mod quaternions;
 
 use std::fmt::Debug;
 use std::ops::Range;

@@ -4,8 +4,9 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3};
 
+use super::quaternions::add_quaternion_element;
 use super::{
     Applied, InertiaVisitor, NODE_TOLERANCE, Needs, NodalForces, QUATERNION_NODE, RodElements, RodInertia,
     RodProperties, StepVelocity, TangentError, Target, full_points,
@@ -18,9 +19,7 @@ use crate::fit;
 use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
 use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
-use crate::linear_solver::{NODE, Sparse};
 use crate::quadrature::gauss_legendre;
-use crate::rotation::rotation_from_quaternion_rate;
 use crate::scene::{NodeSpacing, QuadratureKind};
 use crate::state::State;
 
@@ -475,30 +474,5 @@ where
 
     fn fit(&self, state: &mut State, samples: &[Pose]) -> Result<fit::FitReport, fit::FitError> {
         fit::fit::<N, I>(self, state, samples)
-    }
-}
-
-/// Columns (r, P) by δφ = T(P) δP, eq. (10); rows as they are. The unit constraint is added per node elsewhere.
-fn add_quaternion_element<'a, const N: usize>(
-    system: &mut Sparse,
-    first: usize,
-    tangent: &ElementTangent<N>,
-    quaternion: impl Fn(usize) -> &'a Vector4<f64>,
-) {
-    for j in 0..N {
-        let rate = rotation_from_quaternion_rate(quaternion(j));
-        for (i, row) in tangent.iter().enumerate() {
-            let turned = row[j].fixed_view::<6, 3>(0, 3) * rate;
-            for r in 0..NODE {
-                let row_index = first + QUATERNION_NODE * i + r;
-                let column = first + QUATERNION_NODE * j;
-                for c in 0..3 {
-                    system.add(row_index, column + c, row[j][(r, c)]);
-                }
-                for c in 0..4 {
-                    system.add(row_index, column + 3 + c, turned[(r, c)]);
-                }
-            }
-        }
     }
 }
