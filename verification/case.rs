@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt::Write;
 
+use crate::references::{self, Table};
+
 /// What a case's function returns: an error stands for a problem that could not be solved at all.
 pub type Outcome = Result<(), Box<dyn Error>>;
 
@@ -14,6 +16,27 @@ pub struct Case {
     pub source: &'static str,
     /// Solves and checks.
     pub run: fn(&mut Checks) -> Outcome,
+    /// The files under `references/` that it reads, `source/name.csv`.
+    pub reads: &'static [&'static str],
+    /// Not in the fast part of the suite: it takes more than a second or two.
+    pub slow: bool,
+}
+
+impl Case {
+    /// A fast case that reads no file.
+    pub fn new(name: &'static str, source: &'static str, run: fn(&mut Checks) -> Outcome) -> Self {
+        Self { name, source, run, reads: &[], slow: false }
+    }
+
+    /// The same, which reads these files.
+    pub fn reads(self, reads: &'static [&'static str]) -> Self {
+        Self { reads, ..self }
+    }
+
+    /// The same, in the full part of the suite only.
+    pub fn slow(self) -> Self {
+        Self { slow: true, ..self }
+    }
 }
 
 /// What a reference is worth, strongest first.
@@ -58,9 +81,37 @@ impl Check {
 #[derive(Default)]
 pub struct Checks {
     list: Vec<Check>,
+    /// What the case said it would read, and what it did read.
+    declared: &'static [&'static str],
+    read: Vec<(&'static str, Table)>,
 }
 
 impl Checks {
+    /// None yet, for a case.
+    pub fn of(case: &Case) -> Self {
+        Self { declared: case.reads, ..Self::default() }
+    }
+
+    /// A file under `references/` that the case has declared, `source/name.csv`.
+    ///
+    /// # Errors
+    /// It was not declared, is missing, or is not what its descriptor says.
+    pub fn reference(&mut self, name: &str) -> Result<Table, Box<dyn Error>> {
+        let declared = self.declared.iter().find(|declared| **declared == name);
+        let declared = declared.ok_or_else(|| format!("the case does not say that it reads {name}"))?;
+        let table = Table::read(&references::root(), declared)?;
+        if !self.read.iter().any(|(read, _)| read == declared) {
+            self.read.push((declared, table.clone()));
+        }
+        Ok(table)
+    }
+
+    /// What was declared and has not been read.
+    pub fn unread(&self) -> Vec<&'static str> {
+        let read = |name: &&&str| self.read.iter().any(|(read, _)| read == *name);
+        self.declared.iter().filter(|name| !read(name)).copied().collect()
+    }
+
     /// |measured − reference| ≤ bound.
     pub fn absolute(
         &mut self,

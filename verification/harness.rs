@@ -4,7 +4,7 @@ use crate::case::{Case, Checks, Kind, Outcome};
 
 /// Cases about the harness.
 pub fn all() -> Vec<Case> {
-    vec![Case { name: "harness::wrong_references_fail", source: "this harness", run: wrong_references_fail }]
+    vec![Case::new("harness::wrong_references_fail", "this harness", wrong_references_fail)]
 }
 
 /// What is tried, whether it should pass, and the checks.

@@ -13,6 +13,7 @@ mod measure;
 mod motion;
 mod pieces;
 mod placement;
+mod references;
 mod states;
 mod steps;
 mod tip;
@@ -31,12 +32,14 @@ fn main() {
 /// A case passes if it has checks and every one of them holds.
 fn trial(case: Case, show: bool) -> Trial {
     Trial::test(case.name, move || {
-        let mut checks = Checks::default();
+        let mut checks = Checks::of(&case);
         (case.run)(&mut checks).map_err(|error| Failed::from(format!("{}\n{}", error, checks.table())))?;
         if show {
             eprintln!("{}\n{}", case.name, checks.table());
         }
-        if checks.hold() {
+        if !checks.unread().is_empty() {
+            Err(format!("declared, and not read: {:?}", checks.unread()).into())
+        } else if checks.hold() {
             Ok(())
         } else {
             Err(format!("{}\nsource: {}", checks.table(), case.source).into())

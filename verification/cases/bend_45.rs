@@ -17,13 +17,13 @@ use crate::tip::{Exact, check_tip, half_digit, tip};
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "the continuous equations for the exact arc, see continuous::published_tips";
     vec![
-        Case { name: "bend_45::values", source: SOURCE, run: values },
-        Case { name: "bend_45::slenderness", source: SOURCE, run: slenderness },
-        Case {
-            name: "bend_45::published",
-            source: "Bathe & Bolourchi 1979, IJNME 14; Simo & Vu-Quoc 1986, CMAME 58, section 5.3",
-            run: published,
-        },
+        Case::new("bend_45::values", SOURCE, values),
+        Case::new("bend_45::slenderness", SOURCE, slenderness),
+        Case::new(
+            "bend_45::published",
+            "Bathe & Bolourchi 1979, IJNME 14; Simo & Vu-Quoc 1986, CMAME 58, section 5.3",
+            published,
+        ),
     ]
 }
 

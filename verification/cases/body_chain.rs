@@ -18,10 +18,10 @@ use crate::steps::{
 pub fn all() -> Vec<Case> {
     let source = "Kane's equations in seven coordinates, scripts/rigid_bodies.py";
     vec![
-        Case { name: "body_chain::moving", source, run: |checks| order(checks, true, &MOVING) },
-        Case { name: "body_chain::at_rest", source, run: |checks| order(checks, false, &AT_REST) },
-        Case { name: "body_chain::far_away", source: "objectivity", run: far_away },
-        Case { name: "body_chain::twice_the_same", source: "the same arithmetic", run: twice_the_same },
+        Case::new("body_chain::moving", source, |checks| order(checks, true, &MOVING)),
+        Case::new("body_chain::at_rest", source, |checks| order(checks, false, &AT_REST)),
+        Case::new("body_chain::far_away", "objectivity", far_away),
+        Case::new("body_chain::twice_the_same", "the same arithmetic", twice_the_same),
     ]
 }
 

@@ -13,11 +13,11 @@ use crate::tip::{Exact, check_tip, half_digit};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "cantilever::values",
-        source: "the continuous equations (elliptic integrals with stretch and shear), see continuous::published_tips",
-        run: values,
-    }]
+    vec![Case::new(
+        "cantilever::values",
+        "the continuous equations (elliptic integrals with stretch and shear), see continuous::published_tips",
+        values,
+    )]
 }
 
 pub const LENGTH: f64 = TAU;

@@ -11,21 +11,21 @@ use crate::pieces::{circle, line};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "cantilever_motion::sudden_load",
-            source: "w = Σ 4F/(ρAL ω_k²)(1 − cos ω_k t) of the Euler–Bernoulli cantilever, by the method's recursion",
-            run: sudden_load,
-        },
-        Case {
-            name: "cantilever_motion::slow_load",
-            source: "statics; what is left over oscillates with w_s/(ωT)",
-            run: slow_load,
-        },
-        Case {
-            name: "cantilever_motion::energy",
-            source: "no load, no loss: dissipation of the method as an order",
-            run: energy,
-        },
+        Case::new(
+            "cantilever_motion::sudden_load",
+            "w = Σ 4F/(ρAL ω_k²)(1 − cos ω_k t) of the Euler–Bernoulli cantilever, by the method's recursion",
+            sudden_load,
+        ),
+        Case::new(
+            "cantilever_motion::slow_load",
+            "statics; what is left over oscillates with w_s/(ωT)",
+            slow_load,
+        ),
+        Case::new(
+            "cantilever_motion::energy",
+            "no load, no loss: dissipation of the method as an order",
+            energy,
+        ),
     ]
 }
 

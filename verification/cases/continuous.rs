@@ -12,11 +12,11 @@ use crate::tip::half_digit;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "continuous::published_tips",
-        source: "tips of other implementations of the continuous equations, each repeated there at a second resolution",
-        run: published_tips,
-    }]
+    vec![Case::new(
+        "continuous::published_tips",
+        "tips of other implementations of the continuous equations, each repeated there at a second resolution",
+        published_tips,
+    )]
 }
 
 /// A square section of width w with torsion constant J.

@@ -17,14 +17,10 @@ pub fn all() -> Vec<Case> {
     const SOURCE: &str =
         "Harsch, Sailer & Eugster 2023, section 5.1; errors against the continuous equations";
     vec![
-        Case { name: "convergence_orders::r12", source: SOURCE, run: r12 },
-        Case { name: "convergence_orders::r12_values", source: SOURCE, run: r12_values },
-        Case { name: "convergence_orders::se3", source: SOURCE, run: se3 },
-        Case {
-            name: "convergence_orders::full_quadrature_locks",
-            source: SOURCE,
-            run: full_quadrature_locks,
-        },
+        Case::new("convergence_orders::r12", SOURCE, r12),
+        Case::new("convergence_orders::r12_values", SOURCE, r12_values),
+        Case::new("convergence_orders::se3", SOURCE, se3),
+        Case::new("convergence_orders::full_quadrature_locks", SOURCE, full_quadrature_locks),
     ]
 }
 

@@ -22,10 +22,7 @@ use crate::steps::{distance, run};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     let source = "the rod without the cut";
-    vec![
-        Case { name: "cut_rods::statics", source, run: statics },
-        Case { name: "cut_rods::dynamics", source, run: motion },
-    ]
+    vec![Case::new("cut_rods::statics", source, statics), Case::new("cut_rods::dynamics", source, motion)]
 }
 
 const ELEMENTS: usize = 6;

@@ -14,22 +14,18 @@ use crate::motion::{Recursion, follow, place};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "flexible_pendulum::impulse",
-            source: "the centre of mass under weight and hinge force; the recursion of the method",
-            run: impulse,
-        },
-        Case {
-            name: "flexible_pendulum::shipped",
-            source: "conservation of energy; differences between meshes and steps",
-            run: shipped_scene,
-        },
-        Case { name: "flexible_pendulum::time", source: "order 2 of a smooth motion", run: time },
-        Case {
-            name: "flexible_pendulum::meshes",
-            source: "order 2p at the end of the rod, R12 and SE(3) alike",
-            run: meshes,
-        },
+        Case::new(
+            "flexible_pendulum::impulse",
+            "the centre of mass under weight and hinge force; the recursion of the method",
+            impulse,
+        ),
+        Case::new(
+            "flexible_pendulum::shipped",
+            "conservation of energy; differences between meshes and steps",
+            shipped_scene,
+        ),
+        Case::new("flexible_pendulum::time", "order 2 of a smooth motion", time),
+        Case::new("flexible_pendulum::meshes", "order 2p at the end of the rod, R12 and SE(3) alike", meshes),
     ]
 }
 

@@ -20,13 +20,9 @@ use crate::steps::{
 pub fn all() -> Vec<Case> {
     let source = "one minimal coordinate, scripts/rigid_bodies.py";
     vec![
-        Case { name: "four_bar::order", source, run: order },
-        Case { name: "four_bar::dead_point", source: "a parallelogram in line can fold", run: dead_point },
-        Case {
-            name: "four_bar::order_of_joints",
-            source: "the loop has no first joint",
-            run: order_of_joints,
-        },
+        Case::new("four_bar::order", source, order),
+        Case::new("four_bar::dead_point", "a parallelogram in line can fold", dead_point),
+        Case::new("four_bar::order_of_joints", "the loop has no first joint", order_of_joints),
     ]
 }
 

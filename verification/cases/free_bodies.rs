@@ -19,23 +19,11 @@ use crate::steps::{
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "free_bodies::dzhanibekov",
-            source: "Jacobi's closed form, scripts/rigid_bodies.py",
-            run: dzhanibekov,
-        },
-        Case { name: "free_bodies::flips", source: "zeros of sn, scripts/rigid_bodies.py", run: flips },
-        Case {
-            name: "free_bodies::symmetric",
-            source: "closed form, scripts/rigid_bodies.py",
-            run: symmetric,
-        },
-        Case {
-            name: "free_bodies::ten_thousand_turns",
-            source: "conservation laws",
-            run: ten_thousand_turns,
-        },
-        Case { name: "free_bodies::straight_on", source: "Newton's first law", run: straight_on },
+        Case::new("free_bodies::dzhanibekov", "Jacobi's closed form, scripts/rigid_bodies.py", dzhanibekov),
+        Case::new("free_bodies::flips", "zeros of sn, scripts/rigid_bodies.py", flips),
+        Case::new("free_bodies::symmetric", "closed form, scripts/rigid_bodies.py", symmetric),
+        Case::new("free_bodies::ten_thousand_turns", "conservation laws", ten_thousand_turns),
+        Case::new("free_bodies::straight_on", "Newton's first law", straight_on),
     ]
 }
 

@@ -22,26 +22,26 @@ use crate::placement::placements;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "free_flight::centre_of_mass",
-            source: "ΣN_i′ = 0: the sum of the force rows has no internal forces; the recursion of the method",
-            run: centre_of_mass,
-        },
-        Case {
-            name: "free_flight::angular_momentum_of_the_mesh",
-            source: "impulse of the loads; order 2p, petrov_galerkin::momentum",
-            run: angular_momentum_of_the_mesh,
-        },
-        Case {
-            name: "free_flight::angular_momentum_in_time",
-            source: "impulse of the loads; generalized-α is of order 2",
-            run: angular_momentum_in_time,
-        },
-        Case {
-            name: "free_flight::stiff_rod",
-            source: "Euler's equations of a rigid body; eq. (14), and the sign of eq. (15)",
-            run: stiff_rod,
-        },
+        Case::new(
+            "free_flight::centre_of_mass",
+            "ΣN_i′ = 0: the sum of the force rows has no internal forces; the recursion of the method",
+            centre_of_mass,
+        ),
+        Case::new(
+            "free_flight::angular_momentum_of_the_mesh",
+            "impulse of the loads; order 2p, petrov_galerkin::momentum",
+            angular_momentum_of_the_mesh,
+        ),
+        Case::new(
+            "free_flight::angular_momentum_in_time",
+            "impulse of the loads; generalized-α is of order 2",
+            angular_momentum_in_time,
+        ),
+        Case::new(
+            "free_flight::stiff_rod",
+            "Euler's equations of a rigid body; eq. (14), and the sign of eq. (15)",
+            stiff_rod,
+        ),
     ]
 }
 

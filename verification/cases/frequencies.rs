@@ -14,15 +14,15 @@ use crate::placement::{Placement, placements};
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "Timoshenko's equations by Huang's determinants and by transfer matrices; axial and torsional: closed form";
     vec![
-        Case { name: "frequencies::slender", source: SOURCE, run: slender },
-        Case { name: "frequencies::stocky", source: SOURCE, run: stocky },
-        Case { name: "frequencies::hinged", source: SOURCE, run: hinged },
-        Case {
-            name: "frequencies::euler_bernoulli",
-            source: "closed form, nπ; Timoshenko's first correction",
-            run: euler_bernoulli,
-        },
-        Case { name: "frequencies::count", source: "counting", run: count },
+        Case::new("frequencies::slender", SOURCE, slender),
+        Case::new("frequencies::stocky", SOURCE, stocky),
+        Case::new("frequencies::hinged", SOURCE, hinged),
+        Case::new(
+            "frequencies::euler_bernoulli",
+            "closed form, nπ; Timoshenko's first correction",
+            euler_bernoulli,
+        ),
+        Case::new("frequencies::count", "counting", count),
     ]
 }
 

@@ -10,11 +10,11 @@ use crate::pieces::circle;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "frequencies_complex::clamped_helix",
-        source: "an elastic rod about its stress-free shape has real frequencies only",
-        run: clamped_helix,
-    }]
+    vec![Case::new(
+        "frequencies_complex::clamped_helix",
+        "an elastic rod about its stress-free shape has real frequencies only",
+        clamped_helix,
+    )]
 }
 
 /// Two coils of a thick wire, clamped at one end.

@@ -16,27 +16,27 @@ use crate::placement::placements;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "frequencies_joined::tip_body",
-            source: "transfer matrix of Timoshenko's rod with a rigid body, and Ritz",
-            run: tip_body,
-        },
-        Case {
-            name: "frequencies_joined::frame",
-            source: "transfer matrix of Simo & Vu-Quoc's (1988) frame, and Ritz",
-            run: frame,
-        },
-        Case {
-            name: "frequencies_joined::mechanisms",
-            source: "counting freedoms; rods free at both ends, by symmetry (frequencies::slender)",
-            run: mechanisms,
-        },
-        Case {
-            name: "frequencies_joined::ring",
-            source: "Fourier's 3×3 matrices of the closed Cosserat ring, and transfer matrices",
-            run: ring,
-        },
-        Case { name: "frequencies_joined::ring_orders", source: "the same; order 2p", run: ring_orders },
+        Case::new(
+            "frequencies_joined::tip_body",
+            "transfer matrix of Timoshenko's rod with a rigid body, and Ritz",
+            tip_body,
+        ),
+        Case::new(
+            "frequencies_joined::frame",
+            "transfer matrix of Simo & Vu-Quoc's (1988) frame, and Ritz",
+            frame,
+        ),
+        Case::new(
+            "frequencies_joined::mechanisms",
+            "counting freedoms; rods free at both ends, by symmetry (frequencies::slender)",
+            mechanisms,
+        ),
+        Case::new(
+            "frequencies_joined::ring",
+            "Fourier's 3×3 matrices of the closed Cosserat ring, and transfer matrices",
+            ring,
+        ),
+        Case::new("frequencies_joined::ring_orders", "the same; order 2p", ring_orders),
     ]
 }
 

@@ -26,13 +26,13 @@ pub fn all() -> Vec<Case> {
     const SOURCE: &str =
         "the linearised continuous equations of a straight Cosserat rod, by the matrix exponential";
     vec![
-        Case { name: "frequencies_loaded::axial_force", source: SOURCE, run: axial_force },
-        Case {
-            name: "frequencies_loaded::buckling",
-            source: "P (1 + P/GA − P/EA) = π²EI/(4L²), column with stretch and shear; linear law near it",
-            run: buckling,
-        },
-        Case { name: "frequencies_loaded::hanging_body", source: SOURCE, run: hanging_body },
+        Case::new("frequencies_loaded::axial_force", SOURCE, axial_force),
+        Case::new(
+            "frequencies_loaded::buckling",
+            "P (1 + P/GA − P/EA) = π²EI/(4L²), column with stretch and shear; linear law near it",
+            buckling,
+        ),
+        Case::new("frequencies_loaded::hanging_body", SOURCE, hanging_body),
     ]
 }
 

@@ -12,16 +12,16 @@ use crate::motion::frequencies;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "frequencies_meshes::linear",
-            source: "dispersion of linear elements with one point and a consistent mass, closed form",
-            run: linear,
-        },
-        Case {
-            name: "frequencies_meshes::orders",
-            source: "Galerkin's eigenvalues converge with order 2p; Timoshenko's frequencies",
-            run: orders,
-        },
+        Case::new(
+            "frequencies_meshes::linear",
+            "dispersion of linear elements with one point and a consistent mass, closed form",
+            linear,
+        ),
+        Case::new(
+            "frequencies_meshes::orders",
+            "Galerkin's eigenvalues converge with order 2p; Timoshenko's frequencies",
+            orders,
+        ),
     ]
 }
 

@@ -17,16 +17,12 @@ use crate::steps::{
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "heavy_top::order",
-            source: "Euler's equations by Taylor series, scripts/rigid_bodies.py; Géradin & Cardona 2001",
-            run: order,
-        },
-        Case {
-            name: "heavy_top::reversed_pair",
-            source: "the same joint written the other way round",
-            run: reversed_pair,
-        },
+        Case::new(
+            "heavy_top::order",
+            "Euler's equations by Taylor series, scripts/rigid_bodies.py; Géradin & Cardona 2001",
+            order,
+        ),
+        Case::new("heavy_top::reversed_pair", "the same joint written the other way round", reversed_pair),
     ]
 }
 

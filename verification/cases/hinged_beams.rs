@@ -12,21 +12,9 @@ use crate::steps::rotation;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "hinged_beams::inner_hinge",
-            source: "Timoshenko's beam, closed form",
-            run: inner_hinge,
-        },
-        Case {
-            name: "hinged_beams::fixed_at_both_ends",
-            source: "Timoshenko's beam, closed form",
-            run: fixed,
-        },
-        Case {
-            name: "hinged_beams::oblique_hinge",
-            source: "a hinge carries no moment about its axis",
-            run: oblique_hinge,
-        },
+        Case::new("hinged_beams::inner_hinge", "Timoshenko's beam, closed form", inner_hinge),
+        Case::new("hinged_beams::fixed_at_both_ends", "Timoshenko's beam, closed form", fixed),
+        Case::new("hinged_beams::oblique_hinge", "a hinge carries no moment about its axis", oblique_hinge),
     ]
 }
 

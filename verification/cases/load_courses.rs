@@ -11,11 +11,11 @@ use crate::placement::placements;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "load_courses::centre_of_mass",
-        source: "Newton's second law of the whole; the recursion of the method",
-        run: centre_of_mass,
-    }]
+    vec![Case::new(
+        "load_courses::centre_of_mass",
+        "Newton's second law of the whole; the recursion of the method",
+        centre_of_mass,
+    )]
 }
 
 const END: f64 = 0.5;

@@ -14,18 +14,14 @@ use crate::steps::{body, joint};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "loaded_frames::triangle", source: "equilibrium and the mirror image", run: triangle },
-        Case {
-            name: "loaded_frames::bodies_on_rods",
-            source: "the same rod under the bodies' weights",
-            run: riding,
-        },
-        Case { name: "loaded_frames::hanging", source: "equilibrium", run: hanging },
-        Case {
-            name: "loaded_frames::held_twice",
-            source: "half the work is done by either joint, or all by one",
-            run: held_twice,
-        },
+        Case::new("loaded_frames::triangle", "equilibrium and the mirror image", triangle),
+        Case::new("loaded_frames::bodies_on_rods", "the same rod under the bodies' weights", riding),
+        Case::new("loaded_frames::hanging", "equilibrium", hanging),
+        Case::new(
+            "loaded_frames::held_twice",
+            "half the work is done by either joint, or all by one",
+            held_twice,
+        ),
     ]
 }
 

@@ -10,16 +10,16 @@ use crate::placement::placements;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "loads::line_force",
-            source: "Timoshenko's cantilever: w L⁴/(8 EI) + w L²/(2 GA); axially w L²/(2 EA)",
-            run: line_force,
-        },
-        Case {
-            name: "loads::line_moment",
-            source: "closed form: EI θ′ = c (L − s), tip ∫ (cos θ, sin θ) ds; torsion c L²/(2 GI_p)",
-            run: line_moment,
-        },
+        Case::new(
+            "loads::line_force",
+            "Timoshenko's cantilever: w L⁴/(8 EI) + w L²/(2 GA); axially w L²/(2 EA)",
+            line_force,
+        ),
+        Case::new(
+            "loads::line_moment",
+            "closed form: EI θ′ = c (L − s), tip ∫ (cos θ, sin θ) ds; torsion c L²/(2 GI_p)",
+            line_moment,
+        ),
     ]
 }
 

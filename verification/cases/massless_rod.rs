@@ -15,9 +15,9 @@ use crate::placement::placements;
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "closed form: M ü + F⁻¹ u = f with the flexibility of a Timoshenko cantilever, L³/3EI + L/GA, L²/2EI, L/EI";
     vec![
-        Case { name: "massless_rod::frequencies", source: SOURCE, run: frequencies },
-        Case { name: "massless_rod::recursion", source: SOURCE, run: recursion },
-        Case { name: "massless_rod::order_in_time", source: SOURCE, run: order_in_time },
+        Case::new("massless_rod::frequencies", SOURCE, frequencies),
+        Case::new("massless_rod::recursion", SOURCE, recursion),
+        Case::new("massless_rod::order_in_time", SOURCE, order_in_time),
     ]
 }
 

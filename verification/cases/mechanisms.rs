@@ -14,8 +14,8 @@ use crate::steps::{body, joint};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "mechanisms::refused", source: "rigid kinematics", run: refused },
-        Case { name: "mechanisms::accepted", source: "rigid kinematics", run: accepted },
+        Case::new("mechanisms::refused", "rigid kinematics", refused),
+        Case::new("mechanisms::accepted", "rigid kinematics", accepted),
     ]
 }
 

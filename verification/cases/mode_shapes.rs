@@ -16,17 +16,13 @@ use crate::placement::{Placement, placements};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "mode_shapes::bending",
-            source: "Euler–Bernoulli: cosh βx − cos βx − σ (sinh βx − sin βx), βL = 1.87510407, 4.69409113",
-            run: bending,
-        },
-        Case {
-            name: "mode_shapes::axial_and_torsional",
-            source: "closed form: sin((2n − 1)πx/2L)",
-            run: axial_and_torsional,
-        },
-        Case { name: "mode_shapes::levers", source: "a rigid lever: u + θ × A s", run: levers },
+        Case::new(
+            "mode_shapes::bending",
+            "Euler–Bernoulli: cosh βx − cos βx − σ (sinh βx − sin βx), βL = 1.87510407, 4.69409113",
+            bending,
+        ),
+        Case::new("mode_shapes::axial_and_torsional", "closed form: sin((2n − 1)πx/2L)", axial_and_torsional),
+        Case::new("mode_shapes::levers", "a rigid lever: u + θ × A s", levers),
     ]
 }
 

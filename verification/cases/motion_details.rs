@@ -18,26 +18,18 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "motion_details::held", source: "the joint holds the node", run: held },
-        Case {
-            name: "motion_details::last_step",
-            source: "free fall; the end time is a row",
-            run: last_step,
-        },
-        Case { name: "motion_details::points", source: "the default is a point like any other", run: points },
-        Case { name: "motion_details::gravity", source: "m g z", run: gravity },
-        Case {
-            name: "motion_details::radau_loads",
-            source: "a cubic in time, which the method integrates exactly",
-            run: radau_loads,
-        },
-        Case { name: "motion_details::pair", source: "two modes are two motions", run: pair },
-        Case { name: "motion_details::runaway", source: "energy has a source", run: runaway },
-        Case {
-            name: "motion_details::turned",
-            source: "the loop has the same redundant constraints everywhere",
-            run: turned,
-        },
+        Case::new("motion_details::held", "the joint holds the node", held),
+        Case::new("motion_details::last_step", "free fall; the end time is a row", last_step),
+        Case::new("motion_details::points", "the default is a point like any other", points),
+        Case::new("motion_details::gravity", "m g z", gravity),
+        Case::new(
+            "motion_details::radau_loads",
+            "a cubic in time, which the method integrates exactly",
+            radau_loads,
+        ),
+        Case::new("motion_details::pair", "two modes are two motions", pair),
+        Case::new("motion_details::runaway", "energy has a source", runaway),
+        Case::new("motion_details::turned", "the loop has the same redundant constraints everywhere", turned),
     ]
 }
 

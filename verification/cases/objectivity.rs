@@ -22,12 +22,12 @@ use crate::states::{ElementState, Generator, Worst, places};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "objectivity::rigid_motion",
-            source: "r ↦ c + R r, A ↦ R A: strains and body moments stay, forces turn",
-            run: rigid_motion,
-        },
-        Case { name: "objectivity::quaternion_norm", source: "eq. (5): A(αP) = A(P)", run: quaternion_norm },
+        Case::new(
+            "objectivity::rigid_motion",
+            "r ↦ c + R r, A ↦ R A: strains and body moments stay, forces turn",
+            rigid_motion,
+        ),
+        Case::new("objectivity::quaternion_norm", "eq. (5): A(αP) = A(P)", quaternion_norm),
     ]
 }
 

@@ -17,21 +17,17 @@ use crate::placement::{Placement, placements};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "path_independence::spring",
-            source: "helical spring of section 4.1, wire end at 2 N",
-            run: |checks| compare(checks, &spring(), &SPRING),
-        },
-        Case {
-            name: "path_independence::bend",
-            source: "45° bend (Bathe & Bolourchi 1979) at 600",
-            run: |checks| compare(checks, &bend(), &BEND),
-        },
-        Case {
-            name: "path_independence::hinged",
-            source: "a rod between a revolute and a spherical joint, both off its nodes, with levers on its loads",
-            run: |checks| compare(checks, &hinged(), &HINGED),
-        },
+        Case::new("path_independence::spring", "helical spring of section 4.1, wire end at 2 N", |checks| {
+            compare(checks, &spring(), &SPRING)
+        }),
+        Case::new("path_independence::bend", "45° bend (Bathe & Bolourchi 1979) at 600", |checks| {
+            compare(checks, &bend(), &BEND)
+        }),
+        Case::new(
+            "path_independence::hinged",
+            "a rod between a revolute and a spherical joint, both off its nodes, with levers on its loads",
+            |checks| compare(checks, &hinged(), &HINGED),
+        ),
     ]
 }
 

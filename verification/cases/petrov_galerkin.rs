@@ -32,21 +32,17 @@ use crate::states::{ElementState, places};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "petrov_galerkin::energy_gradient",
-            source: "eq. (8), (11) against the gradient of Σ w J W; orders derived in this file",
-            run: energy_gradient,
-        },
-        Case {
-            name: "petrov_galerkin::momentum",
-            source: "eq. (11): Σ N_i′ = 0; orders derived in this file",
-            run: momentum,
-        },
-        Case {
-            name: "petrov_galerkin::tangent",
-            source: "reciprocity (Betti) for the stress-free rod; orders derived in this file",
-            run: tangent,
-        },
+        Case::new(
+            "petrov_galerkin::energy_gradient",
+            "eq. (8), (11) against the gradient of Σ w J W; orders derived in this file",
+            energy_gradient,
+        ),
+        Case::new("petrov_galerkin::momentum", "eq. (11): Σ N_i′ = 0; orders derived in this file", momentum),
+        Case::new(
+            "petrov_galerkin::tangent",
+            "reciprocity (Betti) for the stress-free rod; orders derived in this file",
+            tangent,
+        ),
     ]
 }
 

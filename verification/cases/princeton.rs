@@ -13,12 +13,8 @@ use crate::tip::{Exact, check_tip, half_digit, tip};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "princeton::values",
-            source: "the continuous equations, see continuous::published_tips",
-            run: values,
-        },
-        Case { name: "princeton::ansys", source: "ANSYS, 199 beam elements, β = 45°", run: ansys },
+        Case::new("princeton::values", "the continuous equations, see continuous::published_tips", values),
+        Case::new("princeton::ansys", "ANSYS, 199 beam elements, β = 45°", ansys),
     ]
 }
 

@@ -14,15 +14,9 @@ use crate::placement::placements;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "probes::angles", source: "closed form: pure torsion and pure bending", run: angles },
-        Case {
-            name: "probes::rotation", source: "the definition A = R_x(γ) R_y(β) R_z(α)", run: rotation
-        },
-        Case {
-            name: "probes::between_nodes",
-            source: "closed form of linear R12 elements",
-            run: between_nodes,
-        },
+        Case::new("probes::angles", "closed form: pure torsion and pure bending", angles),
+        Case::new("probes::rotation", "the definition A = R_x(γ) R_y(β) R_z(α)", rotation),
+        Case::new("probes::between_nodes", "closed form of linear R12 elements", between_nodes),
     ]
 }
 

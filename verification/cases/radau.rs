@@ -13,17 +13,17 @@ use crate::steps::{distance, energy_error, force_at, position_at, quaternion_at,
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "radau::heavy_top",
-            source: "Euler's equations by Taylor series, scripts/rigid_bodies.py; order 5 of the method",
-            run: top,
-        },
-        Case {
-            name: "radau::chain",
-            source: "Kane's equations in seven coordinates, scripts/rigid_bodies.py; order 5 of the method",
-            run: chain,
-        },
-        Case { name: "radau::ring", source: "order 5 of the method; generalized-alpha", run: ring },
+        Case::new(
+            "radau::heavy_top",
+            "Euler's equations by Taylor series, scripts/rigid_bodies.py; order 5 of the method",
+            top,
+        ),
+        Case::new(
+            "radau::chain",
+            "Kane's equations in seven coordinates, scripts/rigid_bodies.py; order 5 of the method",
+            chain,
+        ),
+        Case::new("radau::ring", "order 5 of the method; generalized-alpha", ring),
     ]
 }
 

@@ -17,11 +17,7 @@ use crate::placement::{Placement, placements};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "reactions::balance",
-        source: "equilibrium of the whole rod; what each joint holds",
-        run: balance,
-    }]
+    vec![Case::new("reactions::balance", "equilibrium of the whole rod; what each joint holds", balance)]
 }
 
 const LENGTH: f64 = 2.0;

@@ -18,14 +18,10 @@ use crate::placement::placements;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "reference::exact_fit",
-            source: "as many samples as nodes, at the nodes",
-            run: exact_fit,
-        },
-        Case { name: "reference::minimum", source: "the definition (21)", run: minimum },
-        Case { name: "reference::wilberforce", source: "the authors' program, 45 samples", run: wilberforce },
-        Case { name: "reference::poses", source: "the same samples read from a file", run: poses },
+        Case::new("reference::exact_fit", "as many samples as nodes, at the nodes", exact_fit),
+        Case::new("reference::minimum", "the definition (21)", minimum),
+        Case::new("reference::wilberforce", "the authors' program, 45 samples", wilberforce),
+        Case::new("reference::poses", "the same samples read from a file", poses),
     ]
 }
 

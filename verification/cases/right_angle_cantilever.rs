@@ -14,21 +14,13 @@ use crate::motion::{follow, place};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "right_angle_cantilever::published",
-            source: "Simo & Vu-Quoc 1988: 40 linear elements a leg, time step 0.005",
-            run: published,
-        },
-        Case {
-            name: "right_angle_cantilever::work",
-            source: "work of the load; order 2 in time, 2p in space",
-            run: work,
-        },
-        Case {
-            name: "right_angle_cantilever::energy",
-            source: "no load after t = 2: the energy stays",
-            run: energy,
-        },
+        Case::new(
+            "right_angle_cantilever::published",
+            "Simo & Vu-Quoc 1988: 40 linear elements a leg, time step 0.005",
+            published,
+        ),
+        Case::new("right_angle_cantilever::work", "work of the load; order 2 in time, 2p in space", work),
+        Case::new("right_angle_cantilever::energy", "no load after t = 2: the energy stays", energy),
     ]
 }
 

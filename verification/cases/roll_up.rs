@@ -15,13 +15,9 @@ use crate::tip::{Exact, check_tip, tip};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "roll_up::closed_form", source: "closed form; Euler 1744", run: closed_form },
-        Case { name: "roll_up::se3", source: "closed form; Euler 1744", run: se3 },
-        Case {
-            name: "roll_up::linear_r12",
-            source: "closed form of the discrete equations",
-            run: linear_r12,
-        },
+        Case::new("roll_up::closed_form", "closed form; Euler 1744", closed_form),
+        Case::new("roll_up::se3", "closed form; Euler 1744", se3),
+        Case::new("roll_up::linear_r12", "closed form of the discrete equations", linear_r12),
     ]
 }
 

@@ -11,8 +11,8 @@ use crate::tip::{Exact, check_tip, half_digit};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "scenes::bend_45", source: "bend_45::values, F = 600", run: bend },
-        Case { name: "scenes::roll_up", source: "closed form; Euler 1744", run: roll_up },
+        Case::new("scenes::bend_45", "bend_45::values, F = 600", bend),
+        Case::new("scenes::roll_up", "closed form; Euler 1744", roll_up),
     ]
 }
 

@@ -8,16 +8,8 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "spring_axis::values",
-            source: "continuous rod equations, solved without finite elements",
-            run: values,
-        },
-        Case {
-            name: "spring_axis::initial_stiffness",
-            source: "Castigliano; Berg & Marshall 1991",
-            run: initial_stiffness,
-        },
+        Case::new("spring_axis::values", "continuous rod equations, solved without finite elements", values),
+        Case::new("spring_axis::initial_stiffness", "Castigliano; Berg & Marshall 1991", initial_stiffness),
     ]
 }
 

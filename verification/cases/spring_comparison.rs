@@ -14,16 +14,16 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "spring_comparison::same_unknowns",
-            source: "Harsch & Eugster, section 4.1 and Fig. 1",
-            run: same_unknowns,
-        },
-        Case {
-            name: "spring_comparison::se3_curve",
-            source: "authors' program, 150 SE(3) elements, fit of 151 samples",
-            run: se3_curve,
-        },
+        Case::new(
+            "spring_comparison::same_unknowns",
+            "Harsch & Eugster, section 4.1 and Fig. 1",
+            same_unknowns,
+        ),
+        Case::new(
+            "spring_comparison::se3_curve",
+            "authors' program, 150 SE(3) elements, fit of 151 samples",
+            se3_curve,
+        ),
     ]
 }
 

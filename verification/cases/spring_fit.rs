@@ -11,16 +11,16 @@ use crate::measure::{probe, solve};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "spring_fit::nodes",
-            source: "scripts/spring_fit.py: SciPy on eq. (21) in the paper's 7N unknowns; authors' program",
-            run: nodes,
-        },
-        Case {
-            name: "spring_fit::curve",
-            source: "authors' program, 75 elements, p = 2, fit of 301 samples, 500 increments",
-            run: curve,
-        },
+        Case::new(
+            "spring_fit::nodes",
+            "scripts/spring_fit.py: SciPy on eq. (21) in the paper's 7N unknowns; authors' program",
+            nodes,
+        ),
+        Case::new(
+            "spring_fit::curve",
+            "authors' program, 75 elements, p = 2, fit of 301 samples, 500 increments",
+            curve,
+        ),
     ]
 }
 

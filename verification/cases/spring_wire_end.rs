@@ -17,23 +17,23 @@ const SOURCE: &str = "Harsch & Eugster, section 4.1; continuous rod equations, t
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "spring_wire_end::values", source: SOURCE, run: values },
-        Case { name: "spring_wire_end::order", source: SOURCE, run: order },
-        Case {
-            name: "spring_wire_end::discrete",
-            source: "a prototype of the same element, 75 elements, p = 2",
-            run: discrete,
-        },
-        Case {
-            name: "spring_wire_end::initial_stiffness",
-            source: "Castigliano; Harsch & Eugster, section 4.1; Berg & Marshall 1991",
-            run: initial_stiffness,
-        },
-        Case {
-            name: "spring_wire_end::final_slope",
-            source: "boundary layer of a stretched rod at its clamp, Timoshenko–Reissner; derivation in the case",
-            run: final_slope,
-        },
+        Case::new("spring_wire_end::values", SOURCE, values),
+        Case::new("spring_wire_end::order", SOURCE, order),
+        Case::new(
+            "spring_wire_end::discrete",
+            "a prototype of the same element, 75 elements, p = 2",
+            discrete,
+        ),
+        Case::new(
+            "spring_wire_end::initial_stiffness",
+            "Castigliano; Harsch & Eugster, section 4.1; Berg & Marshall 1991",
+            initial_stiffness,
+        ),
+        Case::new(
+            "spring_wire_end::final_slope",
+            "boundary layer of a stretched rod at its clamp, Timoshenko–Reissner; derivation in the case",
+            final_slope,
+        ),
     ]
 }
 

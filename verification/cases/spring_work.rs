@@ -11,16 +11,16 @@ use crate::measure::displacement;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "spring_work::paper",
-            source: "Harsch & Eugster, section 4.1: 500 increments, tolerance 1e-8",
-            run: paper,
-        },
-        Case {
-            name: "spring_work::accurate_tip",
-            source: "continuous rod equations, solved without finite elements",
-            run: accurate_tip,
-        },
+        Case::new(
+            "spring_work::paper",
+            "Harsch & Eugster, section 4.1: 500 increments, tolerance 1e-8",
+            paper,
+        ),
+        Case::new(
+            "spring_work::accurate_tip",
+            "continuous rod equations, solved without finite elements",
+            accurate_tip,
+        ),
     ]
 }
 

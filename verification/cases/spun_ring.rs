@@ -18,13 +18,9 @@ pub fn all() -> Vec<Case> {
     const SOURCE: &str =
         "three ordinary equations by symmetry, two formulations and two integrators (scripts/flexible.py)";
     vec![
-        Case { name: "spun_ring::order_in_time", source: SOURCE, run: order_in_time },
-        Case { name: "spun_ring::symmetry", source: "rotation of the ring onto itself", run: symmetry },
-        Case {
-            name: "spun_ring::gravity",
-            source: "a constant acceleration adds the motion of a point mass",
-            run: gravity,
-        },
+        Case::new("spun_ring::order_in_time", SOURCE, order_in_time),
+        Case::new("spun_ring::symmetry", "rotation of the ring onto itself", symmetry),
+        Case::new("spun_ring::gravity", "a constant acceleration adds the motion of a point mass", gravity),
     ]
 }
 

@@ -15,10 +15,7 @@ use crate::tip::{Exact, check_tip};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "closed form; Harsch, Sailer & Eugster 2023";
-    vec![
-        Case { name: "straight_to_helix::r12", source: SOURCE, run: r12 },
-        Case { name: "straight_to_helix::se3", source: SOURCE, run: se3 },
-    ]
+    vec![Case::new("straight_to_helix::r12", SOURCE, r12), Case::new("straight_to_helix::se3", SOURCE, se3)]
 }
 
 const COILS: f64 = 2.0;

@@ -13,15 +13,11 @@ use crate::steps::{body, check_second_order, check_vanishes, halved_twice, joint
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "time_steps::nanoseconds", source: "Taylor's series of the motion", run: nanoseconds },
-        Case {
-            name: "time_steps::tenth_of_a_swing",
-            source: "the period of a pendulum",
-            run: tenth_of_a_swing,
-        },
-        Case { name: "time_steps::failure", source: "what converged before is kept", run: failure },
-        Case { name: "time_steps::impulse", source: "the time integral of the load", run: impulse },
-        Case { name: "time_steps::turning_force", source: "closed form", run: turning_force },
+        Case::new("time_steps::nanoseconds", "Taylor's series of the motion", nanoseconds),
+        Case::new("time_steps::tenth_of_a_swing", "the period of a pendulum", tenth_of_a_swing),
+        Case::new("time_steps::failure", "what converged before is kept", failure),
+        Case::new("time_steps::impulse", "the time integral of the load", impulse),
+        Case::new("time_steps::turning_force", "closed form", turning_force),
     ]
 }
 

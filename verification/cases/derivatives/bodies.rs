@@ -19,16 +19,16 @@ use crate::states::{Generator, Worst};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "derivatives::mass_properties",
-            source: "∫ ρ (x·x 1 − x xᵀ) dV over bodies and cross-sections, by Gauss's rule",
-            run: mass_properties,
-        },
-        Case {
-            name: "derivatives::rigid_body",
-            source: "d/dt (m v), d/dt (A Θ ω), the energy of point masses; P₊ ∝ P* ∘ (1, b ω₊/2)",
-            run: rigid_body,
-        },
+        Case::new(
+            "derivatives::mass_properties",
+            "∫ ρ (x·x 1 − x xᵀ) dV over bodies and cross-sections, by Gauss's rule",
+            mass_properties,
+        ),
+        Case::new(
+            "derivatives::rigid_body",
+            "d/dt (m v), d/dt (A Θ ω), the energy of point masses; P₊ ∝ P* ∘ (1, b ω₊/2)",
+            rigid_body,
+        ),
     ]
 }
 

@@ -16,16 +16,16 @@ use crate::states::{ElementState, Generator, Worst, unit_increment};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "derivatives::constraint",
-            source: "points and directions of the parts' material, eq. (5), (10)",
-            run: constraint,
-        },
-        Case {
-            name: "derivatives::constraint_axis",
-            source: "a right-handed orthonormal basis along the axis of a revolute joint",
-            run: constraint_axis,
-        },
+        Case::new(
+            "derivatives::constraint",
+            "points and directions of the parts' material, eq. (5), (10)",
+            constraint,
+        ),
+        Case::new(
+            "derivatives::constraint_axis",
+            "a right-handed orthonormal basis along the axis of a revolute joint",
+            constraint_axis,
+        ),
     ]
 }
 

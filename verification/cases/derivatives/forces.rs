@@ -19,12 +19,8 @@ use crate::states::{ANGLES, ElementState, Generator, Worst, places, unit_increme
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "derivatives::stress_from_energy",
-            source: "eq. (18): n = ∂W/∂γ, m = ∂W/∂κ",
-            run: stress_from_energy,
-        },
-        Case { name: "derivatives::internal_force", source: "eq. (11)", run: internal_forces },
+        Case::new("derivatives::stress_from_energy", "eq. (18): n = ∂W/∂γ, m = ∂W/∂κ", stress_from_energy),
+        Case::new("derivatives::internal_force", "eq. (11)", internal_forces),
     ]
 }
 

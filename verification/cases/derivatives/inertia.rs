@@ -23,17 +23,17 @@ use crate::states::{ElementState, Generator, Worst, places, unit_increment};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "derivatives::mass_matrix", source: "eq. (13)", run: mass_matrix },
-        Case {
-            name: "derivatives::inertia",
-            source: "eq. (13), (14) as one integral over the fields (9); f = −M u̇ − fᵍʸʳ",
-            run: inertia,
-        },
-        Case {
-            name: "derivatives::implicit_step",
-            source: "P₊ ∝ P* ∘ (1, b ω₊/2), r₊ = r* + b v₊, u₊ = u* + b u̇₊",
-            run: implicit_step,
-        },
+        Case::new("derivatives::mass_matrix", "eq. (13)", mass_matrix),
+        Case::new(
+            "derivatives::inertia",
+            "eq. (13), (14) as one integral over the fields (9); f = −M u̇ − fᵍʸʳ",
+            inertia,
+        ),
+        Case::new(
+            "derivatives::implicit_step",
+            "P₊ ∝ P* ∘ (1, b ω₊/2), r₊ = r* + b v₊, u₊ = u* + b u̇₊",
+            implicit_step,
+        ),
     ]
 }
 

@@ -15,16 +15,12 @@ use crate::states::{ANGLES, ElementState, Generator, Worst, places, unit_increme
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "derivatives::strains",
-            source: "eq. (6), (7); Log(H₀⁻¹ H₁) of Harsch, Sailer & Eugster 2023",
-            run: |checks| every_degree(checks, &STRAINS),
-        },
-        Case {
-            name: "derivatives::poses_and_fit",
-            source: "eq. (6), (20), (21)",
-            run: |checks| every_degree(checks, &POSES),
-        },
+        Case::new(
+            "derivatives::strains",
+            "eq. (6), (7); Log(H₀⁻¹ H₁) of Harsch, Sailer & Eugster 2023",
+            |checks| every_degree(checks, &STRAINS),
+        ),
+        Case::new("derivatives::poses_and_fit", "eq. (6), (20), (21)", |checks| every_degree(checks, &POSES)),
     ]
 }
 

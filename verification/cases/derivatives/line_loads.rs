@@ -15,7 +15,7 @@ use crate::states::{ANGLES, ElementState, Generator, Worst, places};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case { name: "derivatives::line_load", source: "eq. (12)", run: line_loads }]
+    vec![Case::new("derivatives::line_load", "eq. (12)", line_loads)]
 }
 
 fn line_loads(checks: &mut Checks) -> Outcome {

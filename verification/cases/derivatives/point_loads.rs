@@ -11,11 +11,11 @@ use crate::states::{ElementState, Generator, Worst, unit_increment};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "derivatives::point_load",
-        source: "virtual work of a force at a lever, and of a moment, in both bases",
-        run: point_load,
-    }]
+    vec![Case::new(
+        "derivatives::point_load",
+        "virtual work of a force at a lever, and of a moment, in both bases",
+        point_load,
+    )]
 }
 
 /// (force inertial, moment body) from virtual work: F·δ(r + A s) = F·δr + (s × Aᵀ F)·δφ.

@@ -18,17 +18,17 @@ use crate::states::{ANGLES, Generator, Worst};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case { name: "derivatives::quaternion_map", source: "eq. (5), (10)", run: quaternion_map },
-        Case {
-            name: "derivatives::rotation_exponential",
-            source: "exp and log of SO(3) as power series",
-            run: rotation_exponential,
-        },
-        Case {
-            name: "derivatives::motion_exponential",
-            source: "Exp and Log of SE(3), V(ψ) = ∫₀¹ exp(x ψ̃) dx as a power series",
-            run: motion_exponential,
-        },
+        Case::new("derivatives::quaternion_map", "eq. (5), (10)", quaternion_map),
+        Case::new(
+            "derivatives::rotation_exponential",
+            "exp and log of SO(3) as power series",
+            rotation_exponential,
+        ),
+        Case::new(
+            "derivatives::motion_exponential",
+            "Exp and Log of SE(3), V(ψ) = ∫₀¹ exp(x ψ̃) dx as a power series",
+            motion_exponential,
+        ),
     ]
 }
 

@@ -21,11 +21,11 @@ use crate::states::{ElementState, Generator, Worst, places};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "derivatives::support",
-        source: "Tᵀ f on the held node's manifold, r = c − A s, δφ = P z",
-        run: support,
-    }]
+    vec![Case::new(
+        "derivatives::support",
+        "Tᵀ f on the held node's manifold, r = c − A s, δφ = P z",
+        support,
+    )]
 }
 
 /// Nodes of the quadratic element.

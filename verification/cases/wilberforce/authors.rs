@@ -24,16 +24,16 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::authors_table",
-            source: "authors' program, 18 elements, p = 2, fit of 45 samples, Δt = 5 ms, ρ∞ = 0.8, tolerance 1e-8",
-            run: table,
-        },
-        Case {
-            name: "wilberforce::envelopes",
-            source: "authors' program: half the difference of consecutive extrema at their mid-time, parabolas between",
-            run: envelopes,
-        },
+        Case::new(
+            "wilberforce::authors_table",
+            "authors' program, 18 elements, p = 2, fit of 45 samples, Δt = 5 ms, ρ∞ = 0.8, tolerance 1e-8",
+            table,
+        ),
+        Case::new(
+            "wilberforce::envelopes",
+            "authors' program: half the difference of consecutive extrema at their mid-time, parabolas between",
+            envelopes,
+        ),
     ]
 }
 

@@ -11,11 +11,11 @@ use crate::case::{Case, Checks, Kind, Outcome};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "wilberforce::beat",
-        source: "Berg & Marshall 1991; scripts/wilberforce.py; the authors' program",
-        run: beat,
-    }]
+    vec![Case::new(
+        "wilberforce::beat",
+        "Berg & Marshall 1991; scripts/wilberforce.py; the authors' program",
+        beat,
+    )]
 }
 
 /// ω² = ½ [ω_θ² + ω_z² ± √((ω_θ² − ω_z²)² + ε²/(m I))], k = G d⁴/(64 n R³), δ = k R² (1 + ν cos² α) and

@@ -9,11 +9,11 @@ use crate::measure::solve;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "wilberforce::masses",
-        source: "closed forms of a cylinder and a helical wire; the figures of the authors' program",
-        run: masses,
-    }]
+    vec![Case::new(
+        "wilberforce::masses",
+        "closed forms of a cylinder and a helical wire; the figures of the authors' program",
+        masses,
+    )]
 }
 
 const DIGITS: &str = "half a unit of the last printed digit, relative";

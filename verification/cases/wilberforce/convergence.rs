@@ -9,16 +9,12 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::space_and_time",
-            source: "order 2p in space, 2 in time; Richardson",
-            run: space_and_time,
-        },
-        Case {
-            name: "wilberforce::converged",
-            source: "Exudyn, 48 two-node elements, h = 5 ms; p = 6 with extrapolation in time",
-            run: converged,
-        },
+        Case::new("wilberforce::space_and_time", "order 2p in space, 2 in time; Richardson", space_and_time),
+        Case::new(
+            "wilberforce::converged",
+            "Exudyn, 48 two-node elements, h = 5 ms; p = 6 with extrapolation in time",
+            converged,
+        ),
     ]
 }
 

@@ -15,11 +15,11 @@ use crate::case::{Case, Checks, Kind, Outcome};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case {
-        name: "wilberforce::exact_motion",
-        source: "scripts/wilberforce_motion.py: 1e-9 m, quaternion 2e-8, α 5e-8 rad",
-        run: exact_motion,
-    }]
+    vec![Case::new(
+        "wilberforce::exact_motion",
+        "scripts/wilberforce_motion.py: 1e-9 m, quaternion 2e-8, α 5e-8 rad",
+        exact_motion,
+    )]
 }
 
 /// t, centre of mass, quaternion, α.

@@ -8,16 +8,16 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::frequencies",
-            source: "scripts/wilberforce.py: shooting and Chebyshev collocation, 1e-11 relative",
-            run: values,
-        },
-        Case {
-            name: "wilberforce::frequency_order",
-            source: "scripts/wilberforce.py; order 2p of the discretisation",
-            run: order,
-        },
+        Case::new(
+            "wilberforce::frequencies",
+            "scripts/wilberforce.py: shooting and Chebyshev collocation, 1e-11 relative",
+            values,
+        ),
+        Case::new(
+            "wilberforce::frequency_order",
+            "scripts/wilberforce.py; order 2p of the discretisation",
+            order,
+        ),
     ]
 }
 

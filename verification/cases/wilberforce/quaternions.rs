@@ -14,12 +14,12 @@ use crate::states::Generator;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::rates",
-            source: "eq. (10): B(q) u = D(u) q, D written from the product with (0, ω)",
-            run: rates,
-        },
-        Case { name: "wilberforce::norms", source: "eq. (5): A(P) does not depend on ‖P‖", run: norms },
+        Case::new(
+            "wilberforce::rates",
+            "eq. (10): B(q) u = D(u) q, D written from the product with (0, ω)",
+            rates,
+        ),
+        Case::new("wilberforce::norms", "eq. (5): A(P) does not depend on ‖P‖", norms),
     ]
 }
 

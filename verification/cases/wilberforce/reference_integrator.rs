@@ -12,12 +12,12 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::radau",
-            source: "generalized-alpha, extrapolated to no step",
-            run: limit_of_generalized_alpha,
-        },
-        Case { name: "wilberforce::radau_halves", source: "the same motion with half the step", run: halves },
+        Case::new(
+            "wilberforce::radau",
+            "generalized-alpha, extrapolated to no step",
+            limit_of_generalized_alpha,
+        ),
+        Case::new("wilberforce::radau_halves", "the same motion with half the step", halves),
     ]
 }
 

@@ -18,16 +18,8 @@ use crate::placement::Placement;
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::shipped",
-            source: "authors_table, the same scene as a file",
-            run: pendulum,
-        },
-        Case {
-            name: "wilberforce::spring_with_bob",
-            source: "scripts/wilberforce.py: shooting, 1e-12 m",
-            run: equilibrium,
-        },
+        Case::new("wilberforce::shipped", "authors_table, the same scene as a file", pendulum),
+        Case::new("wilberforce::spring_with_bob", "scripts/wilberforce.py: shooting, 1e-12 m", equilibrium),
     ]
 }
 

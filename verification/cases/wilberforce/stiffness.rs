@@ -19,12 +19,12 @@ pub fn all() -> Vec<Case> {
     let source = "scripts/wilberforce.py: flexibility of the helix in closed form; linearised equations about the \
                   stretched shape";
     vec![
-        Case { name: "wilberforce::stiffness", source, run: stiffness },
-        Case {
-            name: "wilberforce::reciprocity",
-            source: "Betti: K is symmetric; order 2p of the discretisation, see petrov_galerkin.rs",
-            run: reciprocity,
-        },
+        Case::new("wilberforce::stiffness", source, stiffness),
+        Case::new(
+            "wilberforce::reciprocity",
+            "Betti: K is symmetric; order 2p of the discretisation, see petrov_galerkin.rs",
+            reciprocity,
+        ),
     ]
 }
 

@@ -6,16 +6,8 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case {
-            name: "wilberforce::iterations",
-            source: "own counts; the authors' program: 4.65 a step",
-            run: iterations,
-        },
-        Case {
-            name: "wilberforce::repeatable",
-            source: "the same arithmetic in the same order",
-            run: repeatable,
-        },
+        Case::new("wilberforce::iterations", "own counts; the authors' program: 4.65 a step", iterations),
+        Case::new("wilberforce::repeatable", "the same arithmetic in the same order", repeatable),
     ]
 }
 
