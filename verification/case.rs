@@ -77,10 +77,23 @@ impl Check {
     }
 }
 
+/// What was computed as a line, the reference as dots, for the report.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    pub title: String,
+    /// Names of the axes, with units.
+    pub axes: [&'static str; 2],
+    pub measured: Vec<[f64; 2]>,
+    /// Whose figures they are.
+    pub source: &'static str,
+    pub reference: Vec<[f64; 2]>,
+}
+
 /// The checks of a case.
 #[derive(Default)]
 pub struct Checks {
     list: Vec<Check>,
+    trajectories: Vec<Trajectory>,
     /// What the case said it would read, and what it did read.
     declared: &'static [&'static str],
     read: Vec<(&'static str, Table)>,
@@ -208,6 +221,11 @@ impl Checks {
         let error = (measured - expected).abs();
         let (kind, reference, bound) = (Kind::Order, expected, tolerance);
         self.push(Check { kind, quantity, measured, reference, error, bound, reason });
+    }
+
+    /// A picture beside the numbers; it checks nothing.
+    pub fn trajectory(&mut self, trajectory: Trajectory) {
+        self.trajectories.push(trajectory);
     }
 
     fn push(&mut self, check: Check) {
