@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt::Write;
 
+use serde::Serialize;
+
 use crate::references::{self, Table};
 
 /// What a case's function returns: an error stands for a problem that could not be solved at all.
@@ -20,12 +22,14 @@ pub struct Case {
     pub reads: &'static [&'static str],
     /// Not in the fast part of the suite: it takes more than a second or two.
     pub slow: bool,
+    /// What the solver cannot do yet and this case needs.
+    pub awaits: Option<&'static str>,
 }
 
 impl Case {
     /// A fast case that reads no file.
     pub fn new(name: &'static str, source: &'static str, run: fn(&mut Checks) -> Outcome) -> Self {
-        Self { name, source, run, reads: &[], slow: false }
+        Self { name, source, run, reads: &[], slow: false, awaits: None }
     }
 
     /// The same, which reads these files.
@@ -37,10 +41,17 @@ impl Case {
     pub fn slow(self) -> Self {
         Self { slow: true, ..self }
     }
+
+    /// The same, of something that the solver refuses as not available yet. Once it is there the case fails until it
+    /// no longer says so.
+    pub fn awaits(self, feature: &'static str) -> Self {
+        Self { awaits: Some(feature), ..self }
+    }
 }
 
 /// What a reference is worth, strongest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// A closed form, or the continuous equations solved without finite elements.
     ClosedForm,
@@ -56,8 +67,16 @@ pub enum Kind {
     Pinned,
 }
 
+/// The errors behind an order, for a plot.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ladder {
+    /// Numbers of elements or of time steps.
+    pub sizes: Vec<usize>,
+    pub errors: Vec<f64>,
+}
+
 /// One comparison.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Check {
     pub kind: Kind,
     pub quantity: String,
@@ -68,6 +87,8 @@ pub struct Check {
     pub bound: f64,
     /// Why the bound is what it is.
     pub reason: &'static str,
+    /// What an order was taken from.
+    pub ladder: Option<Ladder>,
 }
 
 impl Check {
@@ -135,7 +156,16 @@ impl Checks {
         reason: &'static str,
     ) {
         let error = (measured - reference).abs();
-        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+        self.push(Check {
+            kind,
+            quantity: quantity.into(),
+            measured,
+            reference,
+            error,
+            bound,
+            reason,
+            ladder: None,
+        });
     }
 
     /// |measured − reference| ≤ bound · |reference|.
@@ -148,7 +178,16 @@ impl Checks {
         reason: &'static str,
     ) {
         let error = ((measured - reference) / reference).abs();
-        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+        self.push(Check {
+            kind,
+            quantity: quantity.into(),
+            measured,
+            reference,
+            error,
+            bound,
+            reason,
+            ladder: None,
+        });
     }
 
     /// |measured − reference| ≤ bound in the Euclidean norm; the table shows the norms.
@@ -163,7 +202,16 @@ impl Checks {
         let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let error = norm(std::array::from_fn(|k| measured[k] - reference[k]));
         let (measured, reference) = (norm(measured), norm(reference));
-        self.push(Check { kind, quantity: quantity.into(), measured, reference, error, bound, reason });
+        self.push(Check {
+            kind,
+            quantity: quantity.into(),
+            measured,
+            reference,
+            error,
+            bound,
+            reason,
+            ladder: None,
+        });
     }
 
     /// value ≤ bound, for an error that was measured already.
@@ -176,7 +224,16 @@ impl Checks {
         reason: &'static str,
     ) {
         let quantity = quantity.into();
-        self.push(Check { kind, quantity, measured: value, reference: 0.0, error: value, bound, reason });
+        self.push(Check {
+            kind,
+            quantity,
+            measured: value,
+            reference: 0.0,
+            error: value,
+            bound,
+            reason,
+            ladder: None,
+        });
     }
 
     /// value ≥ bound, for something that must be seen to be large.
@@ -197,6 +254,7 @@ impl Checks {
             error: bound - value,
             bound: 0.0,
             reason,
+            ladder: None,
         });
     }
 
@@ -216,11 +274,12 @@ impl Checks {
             (errors[last - 2] / errors[last - 1]).ln()
                 / (meshes[last - 1] as f64 / meshes[last - 2] as f64).ln()
         };
+        let ladder = Some(Ladder { sizes: meshes.to_vec(), errors: errors.to_vec() });
         let errors: Vec<String> = errors.iter().map(|error| format!("{error:.3e}")).collect();
         let quantity = format!("{}: order on {meshes:?}, errors [{}]", quantity.into(), errors.join(", "));
         let error = (measured - expected).abs();
         let (kind, reference, bound) = (Kind::Order, expected, tolerance);
-        self.push(Check { kind, quantity, measured, reference, error, bound, reason });
+        self.push(Check { kind, quantity, measured, reference, error, bound, reason, ladder });
     }
 
     /// A picture beside the numbers; it checks nothing.
@@ -237,21 +296,31 @@ impl Checks {
         !self.list.is_empty() && self.list.iter().all(Check::holds)
     }
 
-    /// The checks as text, those that fail first.
-    pub fn table(&self) -> String {
-        let mut sorted: Vec<&Check> = self.list.iter().collect();
-        sorted.sort_by_key(|check| check.holds());
-        let mut text = String::new();
-        for check in sorted {
-            let verdict = if check.holds() { "ok    " } else { "FAILED" };
-            let Check { kind, quantity, measured, reference, error, bound, reason, .. } = check;
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{verdict} {kind:?}: {quantity}: {measured:.12e}, reference {reference:.12e}, \
-                 error {error:.3e}, bound {bound:.3e} ({reason})"
-            );
-        }
-        text
+    /// All of them, in the order they were made.
+    pub fn list(&self) -> &[Check] {
+        &self.list
     }
+
+    /// The checks, the files that were read, and the pictures.
+    pub fn into_parts(self) -> (Vec<Check>, Vec<(&'static str, Table)>, Vec<Trajectory>) {
+        (self.list, self.read, self.trajectories)
+    }
+}
+
+/// Checks as text, those that fail first.
+pub fn table(checks: &[Check]) -> String {
+    let mut sorted: Vec<&Check> = checks.iter().collect();
+    sorted.sort_by_key(|check| check.holds());
+    let mut text = String::new();
+    for check in sorted {
+        let verdict = if check.holds() { "ok    " } else { "FAILED" };
+        let Check { kind, quantity, measured, reference, error, bound, reason, .. } = check;
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{verdict} {kind:?}: {quantity}: {measured:.12e}, reference {reference:.12e}, \
+             error {error:.3e}, bound {bound:.3e} ({reason})"
+        );
+    }
+    text
 }

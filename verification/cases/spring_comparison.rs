@@ -63,7 +63,7 @@ fn same_unknowns(checks: &mut Checks) -> Outcome {
             }
         }
     }
-    plot(Path::new("target/verification/spring_comparison.svg"), &distances)
+    plot(&crate::report::folder().join("spring_comparison.svg"), &distances)
 }
 
 /// The authors' SE(3) curve. Samples at the nodes alone: the fit has no residual, its nodes are on the curve.
