@@ -133,9 +133,9 @@ class Reader:
               if (!svg.querySelector('polyline, line, path, circle')) bad.push(name + ': empty');
               for (const text of svg.querySelectorAll('text')) {
                 const inner = text.getBoundingClientRect();
-                if (Math.max(inner.height, inner.width) < arguments[0]) bad.push(name + ': small ' + text.textContent);
-                if (inner.left < box.left - 1 || inner.right > box.right + 1 || inner.top < box.top - 1
-                    || inner.bottom > box.bottom + 1) bad.push(name + ': cut off ' + text.textContent.trim());
+                if (text.textContent.trim() && Math.max(inner.height, inner.width) < arguments[0]) bad.push(name + ': small ' + text.textContent);
+                if (text.textContent.trim() && (inner.left < box.left - 1 || inner.right > box.right + 1 || inner.top < box.top - 1
+                    || inner.bottom > box.bottom + 1)) bad.push(name + ': cut off ' + text.textContent.trim());
               }
             }
             return bad;""", LEGIBLE)

@@ -56,13 +56,7 @@ struct CaseBlock<'a> {
     failed: usize,
     /// The largest error in parts of its bound.
     worst: String,
-    plots: Vec<Plot>,
-}
-
-#[derive(Serialize)]
-struct Plot {
-    title: String,
-    svg: String,
+    plots: Vec<plots::Plot>,
 }
 
 #[derive(Serialize)]
@@ -196,14 +190,9 @@ fn described(resource: &Resource) -> ResourceRow<'_> {
 }
 
 fn block(case: &Record) -> Result<CaseBlock<'_>, Box<dyn Error>> {
-    let mut plots = Vec::new();
-    if let Some(svg) = plots::convergence(&case.checks)? {
-        plots.push(Plot { title: "Convergence".to_string(), svg });
-    }
+    let mut plots: Vec<plots::Plot> = plots::convergence(&case.checks)?.into_iter().collect();
     for trajectory in &case.trajectories {
-        if let Some(svg) = plots::trajectory(trajectory)? {
-            plots.push(Plot { title: trajectory.title.clone(), svg });
-        }
+        plots.extend(plots::trajectory(trajectory)?);
     }
     let kinds: BTreeSet<Kind> = case.checks.iter().map(|check| check.kind).collect();
     let worst = case

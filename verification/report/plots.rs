@@ -3,13 +3,14 @@
 use std::error::Error;
 use std::ops::Range;
 
-use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
+use serde::Serialize;
 
 use crate::case::{Check, Trajectory};
+use crate::placement::placements;
 
 const SIZE: (u32, u32) = (460, 300);
-const FONT: (&str, u32) = ("sans-serif", 12);
+const FONT: (&str, u32) = ("sans-serif", 14);
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 90, 160),
     RGBColor(200, 80, 0),
@@ -18,36 +19,64 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(120, 100, 0),
     RGBColor(90, 90, 90),
 ];
-/// More ladders than colours cannot be told apart.
+/// Ladders in one picture.
 const LADDERS: usize = COLOURS.len();
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
+/// A picture and what its lines are.
+#[derive(Serialize)]
+pub struct Plot {
+    pub title: String,
+    pub svg: String,
+    pub legend: Vec<Entry>,
+}
+
+/// One line of a legend.
+#[derive(Serialize)]
+pub struct Entry {
+    colour: String,
+    /// Dots instead of a line.
+    dots: bool,
+    name: String,
+}
+
+impl Entry {
+    fn new(colour: RGBColor, dots: bool, name: impl Into<String>) -> Self {
+        let RGBColor(red, green, blue) = colour;
+        Self { colour: format!("rgb({red}, {green}, {blue})"), dots, name: name.into() }
+    }
+}
+
 /// Errors over numbers of elements or steps, both logarithmic, each with a dashed line of the order that is expected.
-/// None if there is nothing to draw.
-pub fn convergence(checks: &[Check]) -> Outcome<Option<String>> {
-    let mut lines = Vec::new();
-    for check in checks {
+/// None if there is nothing to draw. Of more ladders than there are colours, some from the first to the last; the same
+/// ladder turned and shifted would lie on top of it.
+pub fn convergence(checks: &[Check]) -> Outcome<Option<Plot>> {
+    let placed = |check: &Check| {
+        let mut others = placements(1.0).into_iter().skip(1);
+        others.any(|placement| check.quantity.contains(placement.name))
+    };
+    let mut all = Vec::new();
+    for check in checks.iter().filter(|check| !placed(check)) {
         let Some(ladder) = &check.ladder else { continue };
         let points: Vec<(f64, f64)> = ladder
             .sizes
             .iter()
             .zip(&ladder.errors)
-            .map(|(size, error)| (*size as f64, *error))
-            .filter(|(size, error)| *size > 0.0 && *error > 0.0 && error.is_finite())
+            .filter(|(size, error)| **size > 0 && **error > 0.0 && error.is_finite())
+            .map(|(size, error)| ((*size as f64).log2(), *error))
             .collect();
-        if points.len() > 1 && lines.len() < LADDERS {
-            lines.push((check, points));
+        if points.len() > 1 {
+            all.push((check, points));
         }
     }
+    let (count, shown) = (all.len(), all.len().min(LADDERS));
+    let lines: Vec<_> = (0..shown).map(|i| &all[i * (count - 1) / (shown - 1).max(1)]).collect();
     let all = || lines.iter().flat_map(|(_, points)| points);
     let (Some(sizes), Some(errors)) = (span(all().map(|p| p.0)), span(all().map(|p| p.1))) else {
         return Ok(None);
     };
-    let ranges = (
-        (sizes.start / 1.2..sizes.end * 1.2).log_scale(),
-        (errors.start / 4.0..errors.end * 4.0).log_scale(),
-    );
+    let ranges = (widened(&sizes), (errors.start / 4.0..errors.end * 4.0).log_scale());
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -63,29 +92,33 @@ pub fn convergence(checks: &[Check]) -> Outcome<Option<String>> {
             .label_style(FONT)
             .x_desc("elements or steps")
             .y_desc("error")
-            .x_label_formatter(&|size| format!("{size:.0}"))
+            .x_label_formatter(&|size| {
+                if size.fract() == 0.0 { format!("{:.0}", size.exp2()) } else { String::new() }
+            })
             .y_label_formatter(&|error| format!("{error:.0e}"))
             .draw()?;
         for ((check, points), colour) in lines.iter().zip(COLOURS) {
-            chart
-                .draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?
-                .label(format!("order {:.2}, expected {}", check.measured, check.reference))
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+            chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?;
             chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, colour.filled())))?;
             if let (Some(first), Some(last)) = (points.first(), points.last()) {
-                let expected = |size: f64| last.1 * (last.0 / size).powf(check.reference);
+                let expected = |size: f64| last.1 * ((last.0 - size) * check.reference).exp2();
                 let slope = [(first.0, expected(first.0)), *last];
                 chart.draw_series(DashedLineSeries::new(slope, 4, 4, colour.mix(0.6).stroke_width(1)))?;
             }
         }
-        legend(&mut chart, SeriesLabelPosition::LowerLeft)?;
         area.present()?;
     }
-    Ok(Some(text))
+    let legend = lines.iter().zip(COLOURS).map(|(line, colour)| {
+        let check = line.0;
+        let name = check.quantity.split(": order on").next().unwrap_or_default();
+        let orders = format!("{name}: order {:.2}, expected {}", check.measured, check.reference);
+        Entry::new(colour, false, orders)
+    });
+    Ok(Some(Plot { title: "Convergence".to_string(), svg: text, legend: legend.collect() }))
 }
 
 /// What was computed as a line, the reference as dots. None if there is nothing to draw.
-pub fn trajectory(trajectory: &Trajectory) -> Outcome<Option<String>> {
+pub fn trajectory(trajectory: &Trajectory) -> Outcome<Option<Plot>> {
     let finite = |points: &[[f64; 2]]| -> Vec<(f64, f64)> {
         points.iter().filter(|p| p.iter().all(|v| v.is_finite())).map(|p| (p[0], p[1])).collect()
     };
@@ -115,35 +148,13 @@ pub fn trajectory(trajectory: &Trajectory) -> Outcome<Option<String>> {
             .y_label_formatter(&|value| short(*value))
             .draw()?;
         let (ours, theirs) = (COLOURS[0], COLOURS[1]);
-        chart
-            .draw_series(LineSeries::new(measured, ours.stroke_width(2)))?
-            .label("cosserat")
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], ours.stroke_width(2)));
-        chart
-            .draw_series(reference.into_iter().map(|point| Circle::new(point, 2, theirs.filled())))?
-            .label(trajectory.source)
-            .legend(move |(x, y)| Circle::new((x + 8, y), 3, theirs.filled()));
-        legend(&mut chart, SeriesLabelPosition::UpperRight)?;
+        chart.draw_series(LineSeries::new(measured, ours.stroke_width(2)))?;
+        chart.draw_series(reference.into_iter().map(|point| Circle::new(point, 3, theirs.filled())))?;
         area.present()?;
     }
-    Ok(Some(text))
-}
-
-fn legend<'a, X, Y>(
-    chart: &mut ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
-    position: SeriesLabelPosition,
-) -> Outcome<()>
-where
-    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
-    Ok(chart
-        .configure_series_labels()
-        .position(position)
-        .background_style(WHITE.mix(0.85))
-        .border_style(BLACK.mix(0.2))
-        .label_font(FONT)
-        .draw()?)
+    let legend =
+        vec![Entry::new(COLOURS[0], false, "cosserat"), Entry::new(COLOURS[1], true, trajectory.source)];
+    Ok(Some(Plot { title: trajectory.title.clone(), svg: text, legend }))
 }
 
 /// Least and greatest; none for no values.
