@@ -132,10 +132,11 @@ class Reader:
               if (box.width < 200 || box.height < 150) bad.push(name + ': size');
               if (!svg.querySelector('polyline, line, path, circle')) bad.push(name + ': empty');
               for (const text of svg.querySelectorAll('text')) {
-                const inner = text.getBoundingClientRect();
-                if (text.textContent.trim() && Math.max(inner.height, inner.width) < arguments[0]) bad.push(name + ': small ' + text.textContent);
-                if (text.textContent.trim() && (inner.left < box.left - 1 || inner.right > box.right + 1 || inner.top < box.top - 1
-                    || inner.bottom > box.bottom + 1)) bad.push(name + ': cut off ' + text.textContent.trim());
+                const inner = text.getBoundingClientRect(), word = text.textContent.trim();
+                if (!word) continue;
+                if (Math.max(inner.height, inner.width) < arguments[0]) bad.push(name + ': small ' + word);
+                if (inner.left < box.left - 1 || inner.right > box.right + 1 || inner.top < box.top - 1
+                    || inner.bottom > box.bottom + 1) bad.push(name + ': cut off ' + word);
               }
             }
             return bad;""", LEGIBLE)
