@@ -145,7 +145,8 @@ impl Run<'_> {
         recorded.map_err(|reason| SolveError::InitialAcceleration { reason })?;
         let mut integrator: Box<dyn Integrator> = match options.method {
             Method::GeneralizedAlpha => {
-                Box::new(GeneralizedAlpha::new(options.spectral_radius, &self.motion))
+                let method = GeneralizedAlpha::new(options.spectral_radius, step, &mut self.motion);
+                Box::new(method.map_err(|reason| SolveError::InitialAcceleration { reason })?)
             }
             Method::Radau => Box::new(Radau::new(&self.motion)),
         };

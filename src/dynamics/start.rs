@@ -1,7 +1,7 @@
 //! Velocities, accelerations and multipliers that agree with the positions: at the start, and after steps that impose
 //! less.
 
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 
 use super::{Moving, level};
 use crate::inertia::Velocity;
@@ -42,9 +42,9 @@ pub fn accelerate(moving: &mut Moving, time: f64, time_step: f64) -> Result<(), 
         }
     }
     moving.work.solve_right(model, &mut right)?;
-    for (velocity, change) in moving.motion.velocities.iter_mut().zip(right.chunks_exact(NODE)) {
-        velocity.translation += nalgebra::Vector3::from_column_slice(&change[..3]);
-        velocity.rotation += nalgebra::Vector3::from_column_slice(&change[3..]);
+    for (u, change) in moving.motion.velocities.iter_mut().zip(right.chunks_exact(NODE).map(velocity)) {
+        u.translation += change.translation;
+        u.rotation += change.rotation;
     }
 
     moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))?;
@@ -57,21 +57,44 @@ pub fn accelerate(moving: &mut Moving, time: f64, time_step: f64) -> Result<(), 
             right[NODE * (rod.range.start + support.node)..][..NODE].fill(0.0);
         }
     }
-    for coupling in &model.couplings {
+    set_centripetal(moving, &mut right);
+    moving.work.solve_right(model, &mut right)?;
+    for (acceleration, row) in moving.motion.accelerations.iter_mut().zip(right.chunks_exact(NODE)) {
+        *acceleration = velocity(row);
+    }
+    moving.state.multipliers_mut().copy_from_slice(&right[NODE * nodes..]);
+    moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))
+}
+
+/// The part of the accelerations that the joints alone ask for where [`accelerate`] has just been: M u̇ = Gᵀ μ,
+/// G u̇ = −Ġ u. Zero at rest.
+pub fn centripetal(moving: &mut Moving) -> Result<Vec<Velocity>, StopReason> {
+    let nodes = moving.state.poses().len();
+    let mut right = vec![0.0; NODE * nodes + moving.state.multipliers().len()];
+    set_centripetal(moving, &mut right);
+    moving.work.solve_right(moving.model, &mut right)?;
+    Ok(right.chunks_exact(NODE).take(nodes).map(velocity).collect())
+}
+
+/// Writes −Ġ u to the rows of the joints.
+fn set_centripetal(moving: &Moving, right: &mut [f64]) {
+    let first = NODE * moving.state.poses().len();
+    for coupling in &moving.model.couplings {
         let [a, c] = coupling.poses(&moving.state);
         let [u_a, u_c] = coupling.velocities(&moving.motion.velocities);
         let rate = coupling.constraint.acceleration(a, c, &u_a, &u_c);
         for (k, &row) in coupling.rows.iter().enumerate() {
-            right[NODE * nodes + coupling.first + k] = -rate[row];
+            right[first + coupling.first + k] = -rate[row];
         }
     }
-    moving.work.solve_right(model, &mut right)?;
-    for (acceleration, row) in moving.motion.accelerations.iter_mut().zip(right.chunks_exact(NODE)) {
-        acceleration.translation = nalgebra::Vector3::from_column_slice(&row[..3]);
-        acceleration.rotation = nalgebra::Vector3::from_column_slice(&row[3..]);
+}
+
+/// From six entries.
+fn velocity(row: &[f64]) -> Velocity {
+    Velocity {
+        translation: Vector3::from_column_slice(&row[..3]),
+        rotation: Vector3::from_column_slice(&row[3..]),
     }
-    moving.state.multipliers_mut().copy_from_slice(&right[NODE * nodes..]);
-    moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))
 }
 
 /// Factorises [[M, −Gᵀ], [G, 0]], with b² K for what has no mass, where the motion was evaluated last.

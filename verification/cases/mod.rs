@@ -26,6 +26,7 @@ mod massless_rod;
 mod mechanisms;
 mod mode_shapes;
 mod motion_details;
+mod moving_start;
 mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
@@ -90,6 +91,7 @@ pub fn all() -> Vec<Case> {
         mode_shapes::all(),
         objectivity::all(),
         motion_details::all(),
+        moving_start::all(),
         path_independence::all(),
         petrov_galerkin::all(),
         princeton::all(),

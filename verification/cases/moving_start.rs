@@ -1,0 +1,87 @@
+//! A pendulum that is given a push: what the joint bears in the very first steps.
+//!
+//! In one plane the angle φ from the hanging position tells everything: with the inertia I about the hinge,
+//! I ω² = I ω₀² + 2 m g l (cos φ − cos φ₀), I ω̇ = −m g l sin φ, and the hinge bears m (a_S − g). Where the pendulum is
+//! comes from the run itself, so that the closed form shows the error of the force alone.
+
+use cosserat::scene::{Dynamics, JointKind, Scene};
+use nalgebra::Vector3;
+
+use crate::case::{Case, Checks, Kind, Outcome};
+use crate::measure::probe;
+use crate::placement::{Placement, placements};
+use crate::steps::{body, force_at, halved_twice, joint, position_at};
+
+/// The cases of this file.
+pub fn all() -> Vec<Case> {
+    vec![Case::new("moving_start::reactions", "equation of a plane pendulum; energy", reactions)]
+}
+
+const LENGTH: f64 = 0.5;
+const MASS: f64 = 2.0;
+/// About its centre of mass, normal to the plane [kg m²].
+const INERTIA: f64 = 0.05;
+/// Angle and rate at the start.
+const START: (f64, f64) = (0.7, 8.0);
+const GRAVITY: f64 = 9.81;
+const STEP: f64 = 2e-3;
+/// Steps that are looked at: wrong multipliers fade by about the spectral radius a step.
+const STEPS: usize = 40;
+
+fn scene() -> Scene {
+    let (angle, rate) = START;
+    let position = [LENGTH * angle.sin(), 0.0, -LENGTH * angle.cos()];
+    let mut bob = body("bob", MASS, [0.03, INERTIA, 0.04], position);
+    // φ grows about −e_y.
+    bob.angular_velocity = [0.0, -rate, 0.0];
+    bob.velocity = [LENGTH * rate * angle.cos(), 0.0, LENGTH * rate * angle.sin()];
+    Scene {
+        gravity: Some([0.0, 0.0, -GRAVITY]),
+        body: vec![bob],
+        joint: vec![joint("hinge", JointKind::Spherical, ["ground", "bob"], [0.0; 3])],
+        probe: vec![probe("bob", "bob")],
+        dynamics: Some(Dynamics::new(STEPS as f64 * STEP, STEP)),
+        ..Scene::default()
+    }
+}
+
+/// The force on the bob where its centre of mass is.
+fn force(position: Vector3<f64>) -> Vector3<f64> {
+    let down = position / position.norm();
+    let (sine, cosine) = (down.x, -down.z);
+    let inertia = INERTIA + MASS * LENGTH * LENGTH;
+    let squared = START.1.powi(2) + 2.0 * MASS * GRAVITY * LENGTH / inertia * (cosine - START.0.cos());
+    let change = -MASS * GRAVITY * LENGTH / inertia * sine;
+    let across = Vector3::new(cosine, 0.0, sine);
+    (across * change * LENGTH - down * squared * LENGTH) * MASS + Vector3::new(0.0, 0.0, MASS * GRAVITY)
+}
+
+fn reactions(checks: &mut Checks) -> Outcome {
+    for placement in placements(LENGTH) {
+        let runs = halved_twice(&placement.apply(&scene()))?;
+        let mut errors = Vec::new();
+        for (run, part) in runs.iter().zip([1.0, 0.5, 0.25]) {
+            let mut worst = 0.0_f64;
+            for index in 0..=STEPS {
+                let time = index as f64 * part * STEP;
+                let exact = force(position_at(run, time, 0, &placement)?);
+                worst = worst.max((force_at(run, time, 0, &placement)? - exact).norm() / exact.norm());
+            }
+            errors.push(worst);
+        }
+        first_order(checks, &placement, &errors);
+    }
+    Ok(())
+}
+
+fn first_order(checks: &mut Checks, placement: &Placement, errors: &[f64]) {
+    let name = format!("force of the hinge in the first {STEPS} steps, {}", placement.name);
+    checks.below(
+        Kind::ClosedForm,
+        format!("{name}: largest error, in parts of the force"),
+        errors[0],
+        START.1 * STEP,
+        "first order: what the force changes by in one step is ω h of it, with ω up to 8 rad/s",
+    );
+    checks.order(name, &[1, 2, 4], errors, (1.0, 0.15), "the first multipliers are of first order");
+}
