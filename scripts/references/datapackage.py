@@ -31,6 +31,7 @@ TITLES = {
     "published": "Published tables and figures, typed in",
     "pyelastica": "PyElastica: discrete elastic rods, explicit dynamics",
     "rigid": "Equations of motion of rigid bodies, in closed form or minimal coordinates",
+    "scipy": "SciPy: the paper's fit of the reference, eq. (21), as a problem of least squares",
 }
 
 

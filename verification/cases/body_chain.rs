@@ -1,12 +1,14 @@
 //! Three bodies on a ball joint, an oblique hinge and a ball joint, in space.
 //!
-//! The references are Kane's equations in seven coordinates, `scripts/rigid_bodies.py`: poses good to 1e-12, forces to
-//! 3e-12.
+//! The references are Kane's equations in seven coordinates: poses good to 1e-12, forces to 5e-12.
+
+use std::error::Error;
 
 use cosserat::scene::{Body, Dynamics, Joint, JointKind, Scene};
+use cosserat::solution::Solution;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::case::{Case, Checks, Kind, Outcome};
+use crate::case::{Case, Checks, Kind, Outcome, Trajectory};
 use crate::measure::probe;
 use crate::placement::{Placement, placements};
 use crate::steps::{
@@ -16,10 +18,10 @@ use crate::steps::{
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    let source = "Kane's equations in seven coordinates, scripts/rigid_bodies.py";
+    let source = "Kane's equations in seven coordinates";
     vec![
-        Case::new("body_chain::moving", source, |checks| order(checks, true, &MOVING)),
-        Case::new("body_chain::at_rest", source, |checks| order(checks, false, &AT_REST)),
+        Case::new("body_chain::moving", source, |checks| order(checks, true)).reads(FILES),
+        Case::new("body_chain::at_rest", source, |checks| order(checks, false)).reads(FILES),
         Case::new("body_chain::far_away", "objectivity", far_away),
         Case::new("body_chain::twice_the_same", "the same arithmetic", twice_the_same),
     ]
@@ -28,33 +30,21 @@ pub fn all() -> Vec<Case> {
 /// t, (position, quaternion) of the bodies, force of the ground on the first.
 pub type Exact = (f64, [([f64; 3], [f64; 4]); 3], [f64; 3]);
 
-#[rustfmt::skip]
-pub const MOVING: [Exact; 2] = [
-    (0.5, [
-        ([-0.0314266933254025, 0.227037546749127, -0.295747046160683], [0.866342422469836, 0.0219640005053867, 0.335598432596506, 0.369245286699321]),
-        ([-0.119145734549081, 0.474015250749925, -0.800749055090747], [0.241392467848677, 0.263543474941956, 0.178679294838679, 0.916705090461156]),
-        ([-0.2057700561487, 0.933346630462492, -1.07540659704454], [0.507088607408787, -0.0235544594449308, 0.861079605671412, 0.0291246351606369]),
-    ], [7.69837625594611, -13.9039474090139, 25.0734667704136]),
-    (1.0, [
-        ([-0.127292909287294, -0.230477443288223, -0.265850829189041], [0.603955589015156, -0.492500338868098, 0.602356052289422, 0.172766457920711]),
-        ([-0.449986840871086, -0.651555990456736, -0.55687255099969], [0.197389456510723, 0.368271851211183, 0.756667166520153, 0.502859866338778]),
-        ([-0.814341178542876, -0.807567450712178, -0.889855866340648], [0.193871214437501, -0.715115108052775, 0.641807924791112, -0.197754701897384]),
-    ], [13.5776343283029, 19.0599762338826, 22.9097237084787]),
-];
+/// Poses, and the force of the ground.
+pub const FILES: &[&str] = &["rigid/chain.csv", "rigid/chain_force.csv"];
 
-#[rustfmt::skip]
-const AT_REST: [Exact; 2] = [
-    (0.5, [
-        ([0.0606750195888635, 0.0052282876147899, -0.369176390098972], [0.873812726993709, 0.0154481251805065, 0.41437320140802, -0.253983313481603]),
-        ([0.0286368182001065, 0.0232583242410018, -0.945981446270774], [0.719934416697578, 0.355065266327211, 0.231110656545105, 0.549737170594817]),
-        ([0.167782696092828, 0.157064504847092, -1.43605794705841], [0.421995089029231, -0.0975466460060756, 0.788251269860271, -0.437109519745163]),
-    ], [-2.62279352594521, -5.42282798702282, 36.5313181217038]),
-    (1.0, [
-        ([-0.262091894395224, -0.110459635572477, -0.243118300013632], [0.460635912822478, -0.16215499325519, 0.568688919636318, -0.66190122122828]),
-        ([-0.718942380448085, -0.211490139440384, -0.531878422904726], [0.795119367908225, 0.279041039869675, 0.537051035539639, -0.0386972101252325]),
-        ([-0.992728338635766, -0.421694333087858, -0.945382864069113], [0.133110534960745, -0.494988197321226, 0.784953080588515, -0.348018578914614]),
-    ], [8.70803071694046, 2.12592799403068, 13.1486343083667]),
-];
+/// The reference at a time of the files.
+pub fn exact(checks: &mut Checks, moving: bool, time: f64) -> Result<Exact, Box<dyn Error>> {
+    let (start, at) = (if moving { "moving" } else { "at rest" }, format!("{time:?}"));
+    let poses = checks.reference(FILES[0])?;
+    let pose = |body: &str| -> Result<_, Box<dyn Error>> {
+        let row = poses.row(&[("start", start), ("t", &at), ("body", body)])?;
+        Ok((row.numbers("x y z")?, row.numbers("qw qx qy qz")?))
+    };
+    let forces = checks.reference(FILES[1])?;
+    let force = forces.row(&[("start", start), ("t", &at)])?.numbers("fx fy fz")?;
+    Ok((time, [pose("1")?, pose("2")?, pose("3")?], force))
+}
 
 const STEP: f64 = 2e-3;
 
@@ -95,10 +85,11 @@ pub fn scene(moving: bool, step: f64) -> Scene {
     }
 }
 
-fn order(checks: &mut Checks, moving: bool, table: &[Exact]) -> Outcome {
+fn order(checks: &mut Checks, moving: bool) -> Outcome {
     for placement in placements(1.0) {
         let runs = halved_twice(&placement.apply(&scene(moving, STEP)))?;
-        for &(time, bodies, force) in table {
+        for time in [0.5, 1.0] {
+            let (_, bodies, force) = exact(checks, moving, time)?;
             for (index, (position, quaternion)) in bodies.into_iter().enumerate() {
                 let label =
                     |what: &str| format!("{what} of body {} at {time} s, {}", index + 1, placement.name);
@@ -118,6 +109,9 @@ fn order(checks: &mut Checks, moving: bool, table: &[Exact]) -> Outcome {
             let slices = [f[0].as_slice(), f[1].as_slice(), f[2].as_slice()];
             check_second_order(checks, &format!("force at {time} s, {}", placement.name), slices, &force);
         }
+        if placement.name == "as is" {
+            path(checks, moving, &runs[2])?;
+        }
         let errors = [0, 1, 2].map(|k| energy_error(&runs[k]));
         check_vanishes(checks, &format!("energy, {}", placement.name), errors);
         for run in &runs {
@@ -129,6 +123,29 @@ fn order(checks: &mut Checks, moving: bool, table: &[Exact]) -> Outcome {
             checks.below(Kind::Pinned, "iterations a step", mean, 3.0, "the first step starts from a = ẏ");
         }
     }
+    Ok(())
+}
+
+/// The way of the last body, seen from the side.
+fn path(checks: &mut Checks, moving: bool, run: &Solution) -> Outcome {
+    let start = if moving { "moving" } else { "at rest" };
+    let poses = checks.reference(FILES[0])?;
+    checks.trajectory(Trajectory {
+        title: format!("Chain of three bodies, {start}: centre of mass of the last"),
+        axes: ["x [m]", "z [m]"],
+        measured: run
+            .rows
+            .iter()
+            .step_by(10)
+            .map(|row| [row.probes[2].position[0], row.probes[2].position[2]])
+            .collect(),
+        source: "Kane's equations",
+        reference: poses
+            .select(&[("start", start), ("body", "3")])?
+            .iter()
+            .map(|row| row.numbers("x z"))
+            .collect::<Result<_, _>>()?,
+    });
     Ok(())
 }
 

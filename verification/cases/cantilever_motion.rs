@@ -1,9 +1,11 @@
 //! A slender cantilever under loads in time: sudden and small, slow and large, and let go.
 
+use std::error::Error;
+
 use cosserat::scene::{Dynamics, Load, LoadKind, LoadTime, NamedTime, Rod, Scene, Statics};
 
 use crate::case::{Case, Checks, Kind, Outcome};
-use crate::cases::frequencies::{DENSITY, LENGTH, POISSON, YOUNG, steel};
+use crate::cases::frequencies::{DENSITY, FILE, LENGTH, POISSON, YOUNG, bending, steel};
 use crate::measure::{clamp, load, probe, solve};
 use crate::motion::{Recursion, follow, place};
 use crate::pieces::{circle, line};
@@ -15,26 +17,31 @@ pub fn all() -> Vec<Case> {
             "cantilever_motion::sudden_load",
             "w = Σ 4F/(ρAL ω_k²)(1 − cos ω_k t) of the Euler–Bernoulli cantilever, by the method's recursion",
             sudden_load,
-        ),
+        )
+        .reads(&[FILE]),
         Case::new(
             "cantilever_motion::slow_load",
             "statics; what is left over oscillates with w_s/(ωT)",
             slow_load,
-        ),
+        )
+        .reads(&[FILE]),
         Case::new(
             "cantilever_motion::energy",
             "no load, no loss: dissipation of the method as an order",
             energy,
-        ),
+        )
+        .reads(&[FILE]),
     ]
 }
 
 const DIAMETER: f64 = 0.01;
 const AREA: f64 = std::f64::consts::PI * DIAMETER * DIAMETER / 4.0;
 const BENDING: f64 = YOUNG * AREA * DIAMETER * DIAMETER / 16.0;
-/// The lowest, with shear and rotary inertia (frequencies::slender).
-const LOWEST: [f64; 4] = [44.507761371491, 278.83829464891, 780.36180279496, 1528.0730999438];
-const FIRST: f64 = LOWEST[0];
+
+/// The lowest, with shear and rotary inertia.
+fn lowest(checks: &mut Checks) -> Result<[f64; 4], Box<dyn Error>> {
+    bending(checks, "slender", "cantilever", "any")
+}
 
 fn scene(force: f64, elements: usize) -> Scene {
     Scene {
@@ -57,9 +64,10 @@ fn beta(k: usize) -> f64 {
 }
 
 fn sudden_load(checks: &mut Checks) -> Outcome {
+    let lowest = lowest(checks)?;
     let deflection = 1e-4;
     let force = 3.0 * BENDING * deflection;
-    let (period, steps) = (std::f64::consts::TAU / FIRST, 400);
+    let (period, steps) = (std::f64::consts::TAU / lowest[0], 400);
     let step = 2.0 * period / steps as f64;
     for spectral_radius in [1.0, 0.8, 0.3] {
         let mut scene = scene(force, 4);
@@ -69,7 +77,7 @@ fn sudden_load(checks: &mut Checks) -> Outcome {
         let mut modes: Vec<(f64, Recursion)> = (0..6)
             .map(|k| {
                 let slender = beta(k).powi(4) * BENDING / (DENSITY * AREA);
-                let square = LOWEST.get(k).map_or(slender, |omega| omega * omega);
+                let square = lowest.get(k).map_or(slender, |omega| omega * omega);
                 (4.0 * force / (DENSITY * AREA), Recursion::new(spectral_radius, square, 1.0))
             })
             .collect();
@@ -102,6 +110,7 @@ fn sudden_load(checks: &mut Checks) -> Outcome {
 
 /// A load that grows slowly to where the deflection is large ends at the static equilibrium, but for a small oscillation.
 fn slow_load(checks: &mut Checks) -> Outcome {
+    let [first, ..] = lowest(checks)?;
     let force = 3.0 * BENDING;
     let mut still = scene(force, 4);
     still.statics = Some(Statics::default());
@@ -109,7 +118,7 @@ fn slow_load(checks: &mut Checks) -> Outcome {
     let last = solution.rows.len() - 1;
     let end = place(&solution, last, 0);
     for periods in [10.0, 20.0] {
-        let time = periods * std::f64::consts::TAU / FIRST;
+        let time = periods * std::f64::consts::TAU / first;
         let mut moving = scene(force, 4);
         moving.load[0].time = Some(LoadTime::Named(NamedTime::Ramp));
         moving.dynamics = Some(Dynamics::new(time, time / (40.0 * periods)));
@@ -119,7 +128,7 @@ fn slow_load(checks: &mut Checks) -> Outcome {
             Kind::ClosedForm,
             format!("distance from the equilibrium after {periods} periods of ramp"),
             (place(&solution, last, 0) - end).norm(),
-            2.0 / (FIRST * time),
+            2.0 / (first * time),
             "a ramp leaves w_s/(ωT) of the linear deflection w_s = 1 oscillating, once from its start; the path bends \
              and the frequency changes by as much again",
         );
@@ -136,7 +145,8 @@ fn slow_load(checks: &mut Checks) -> Outcome {
 
 /// After a smooth pulse the energy stays, to the dissipation of the method; without dissipation better still.
 fn energy(checks: &mut Checks) -> Outcome {
-    let period = std::f64::consts::TAU / FIRST;
+    let [first, ..] = lowest(checks)?;
+    let period = std::f64::consts::TAU / first;
     let counts = [100, 200, 400];
     for spectral_radius in [0.5, 0.8, 1.0] {
         let mut losses = Vec::new();
@@ -167,7 +177,7 @@ fn energy(checks: &mut Checks) -> Outcome {
             Kind::Order,
             format!("{name}, finest"),
             losses[2],
-            (FIRST * 2.0 * period / 400.0_f64).powi(2),
+            (first * 2.0 * period / 400.0_f64).powi(2),
             "(ωh)² of the first mode, which has nearly all of the energy",
         );
     }

@@ -1,16 +1,16 @@
 //! Bodies that nothing holds: Euler's closed forms, the flips of a nut, and ten thousand revolutions.
 //!
-//! The references are Jacobi's elliptic functions and, for the symmetric body, two rotations one after the other,
-//! `scripts/rigid_bodies.py`: good to all digits. The method conserves neither energy nor angular momentum by
-//! itself.
+//! The references are Jacobi's elliptic functions and, for the symmetric body, two rotations one after the other: good
+//! to all digits. The method conserves neither energy nor angular momentum by itself.
 
 use cosserat::scene::{Body, Dynamics, Probe, Scene};
 use cosserat::solution::Solution;
 use nalgebra::{Vector3, Vector4};
 
-use crate::case::{Case, Checks, Kind, Outcome};
+use crate::case::{Case, Checks, Kind, Outcome, Trajectory};
 use crate::measure::probe;
 use crate::placement::placements;
+use crate::references::Table;
 use crate::steps::{
     body, check_second_order, check_vanishes, energy_error, halved_twice, quaternion_at, rotation, run,
     with_step,
@@ -19,9 +19,9 @@ use crate::steps::{
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new("free_bodies::dzhanibekov", "Jacobi's closed form, scripts/rigid_bodies.py", dzhanibekov),
-        Case::new("free_bodies::flips", "zeros of sn, scripts/rigid_bodies.py", flips),
-        Case::new("free_bodies::symmetric", "closed form, scripts/rigid_bodies.py", symmetric),
+        Case::new("free_bodies::dzhanibekov", "Jacobi's closed form", dzhanibekov).reads(&[NUT_FILE]),
+        Case::new("free_bodies::flips", "zeros of sn", flips).reads(&[FLIPS_FILE]),
+        Case::new("free_bodies::symmetric", "closed form", symmetric).reads(&[TOP_FILE]),
         Case::new("free_bodies::ten_thousand_turns", "conservation laws", ten_thousand_turns),
         Case::new("free_bodies::straight_on", "Newton's first law", straight_on),
     ]
@@ -30,21 +30,13 @@ pub fn all() -> Vec<Case> {
 const NUT: [f64; 3] = [1.0, 2.0, 3.0];
 const NUT_TURNS: [f64; 3] = [0.01, 5.0, 0.02];
 
-/// t, quaternion.
-const NUT_TABLE: [(f64, [f64; 4]); 4] = [
-    (1.0, [-0.800979092266397, 0.00673741556939064, 0.598231099553712, 0.0225089428961439]),
-    (2.0, [0.263324965446303, 0.0864592751202114, -0.890409374401588, -0.3610483378942]),
-    (3.0, [0.0508961294969405, -0.761415207664828, 0.129159610022898, 0.63322528430069]),
-    (5.0, [0.00542822102394179, -0.831022451229783, -0.00358652601395907, -0.556200824163098]),
-];
-
 const TOP: [f64; 3] = [2.0, 2.0, 3.0];
 const TOP_TURNS: [f64; 3] = [1.0, 0.0, 10.0];
-const TOP_TABLE: [(f64, [f64; 4]); 3] = [
-    (1.0, [0.298335675744842, -0.0502878146343395, 0.0375661188112562, -0.952394743262808]),
-    (2.0, [-0.819169222590654, 0.0117862346761345, -0.0398435431898164, -0.572044894652914]),
-    (5.0, [0.998758128633916, -0.00767344976531524, 0.000510040714926658, -0.0492245722667764]),
-];
+
+/// Jacobi's closed form and a Taylor series, the zeros of sn, and the closed form of the symmetric body.
+const NUT_FILE: &str = "rigid/free_asymmetric_body.csv";
+const FLIPS_FILE: &str = "rigid/free_asymmetric_body_flips.csv";
+const TOP_FILE: &str = "rigid/free_symmetric_body.csv";
 
 fn scene(inertia: [f64; 3], turns: [f64; 3], end_time: f64, step: f64, spectral_radius: f64) -> Scene {
     Scene {
@@ -58,10 +50,17 @@ fn scene(inertia: [f64; 3], turns: [f64; 3], end_time: f64, step: f64, spectral_
 /// Spectral radii: without joints 1 is allowed, too.
 const RADII: [f64; 2] = [0.8, 1.0];
 
-fn check_table(checks: &mut Checks, scene: &Scene, table: &[(f64, [f64; 4])], what: &str) -> Outcome {
+/// Quaternions of a file at some times, and a picture of it all.
+fn check_table(checks: &mut Checks, scene: &Scene, file: &str, times: &[f64], what: &str) -> Outcome {
+    let table = checks.reference(file)?;
+    let mut exact = Vec::new();
+    for &time in times {
+        let row = table.row(&[("t", &format!("{time:?}"))])?;
+        exact.push((time, row.numbers::<4>("qw qx qy qz")?));
+    }
     for placement in placements(1.0) {
         let runs = halved_twice(&placement.apply(scene))?;
-        for &(time, exact) in table {
+        for &(time, exact) in &exact {
             let mut q = Vec::new();
             for run in &runs {
                 q.push(quaternion_at(run, time, 0, &placement, exact)?);
@@ -69,7 +68,37 @@ fn check_table(checks: &mut Checks, scene: &Scene, table: &[(f64, [f64; 4])], wh
             let label = format!("rotation at {time} s, {what}, {}", placement.name);
             check_second_order(checks, &label, [&q[0], &q[1], &q[2]], &exact);
         }
+        if placement.name == "as is" {
+            axis(checks, &runs[2], &table, what)?;
+        }
     }
+    Ok(())
+}
+
+/// Where the body's third axis points, along e_z: 1 − 2 (q_x² + q_y²).
+fn axis(checks: &mut Checks, run: &Solution, table: &Table, what: &str) -> Outcome {
+    let along = |[_, x, y, _]: [f64; 4]| 1.0 - 2.0 * (x * x + y * y);
+    let end = run.rows.last().ok_or("no rows")?.parameter;
+    let every = run.rows.len() / 250 + 1;
+    let mut reference = Vec::new();
+    for row in table.rows() {
+        let t = row.number("t")?;
+        if t <= end {
+            reference.push([t, along(row.numbers("qw qx qy qz")?)]);
+        }
+    }
+    checks.trajectory(Trajectory {
+        title: format!("Free body, {what}: third axis along e_z"),
+        axes: ["t [s]", "cosine"],
+        measured: run
+            .rows
+            .iter()
+            .step_by(every)
+            .map(|row| [row.parameter, along(row.probes[0].quaternion)])
+            .collect(),
+        source: "closed form",
+        reference,
+    });
     Ok(())
 }
 
@@ -101,7 +130,7 @@ fn dzhanibekov(checks: &mut Checks) -> Outcome {
     for radius in RADII {
         let what = format!("ρ∞ = {radius}");
         let scene = scene(NUT, NUT_TURNS, 5.0, 2e-3, radius);
-        check_table(checks, &scene, &NUT_TABLE, &what)?;
+        check_table(checks, &scene, NUT_FILE, &[1.0, 2.0, 3.0, 5.0], &what)?;
         let runs = halved_twice(&scene)?;
         let energy = [0, 1, 2].map(|k| energy_error(&runs[k]));
         check_vanishes(checks, &format!("energy, {what}"), energy);
@@ -151,18 +180,23 @@ fn flip_times(solution: &Solution) -> Vec<f64> {
 }
 
 fn flips(checks: &mut Checks) -> Outcome {
-    const FIRST: f64 = 2.320_603_249_091_621_3;
-    const PERIOD: f64 = 4.435_355_756_224_817;
+    let table = checks.reference(FLIPS_FILE)?;
+    let exact = table.rows().map(|row| row.number("t")).collect::<Result<Vec<f64>, _>>()?;
     let runs = halved_twice(&scene(NUT, NUT_TURNS, 22.0, 2e-3, 1.0))?;
     let times: [Vec<f64>; 3] = [0, 1, 2].map(|k| flip_times(&runs[k]));
     for times in &times {
         let reason = "at 2.32 s and every 4.44 s after, the last of them 1.9 s before the end";
-        checks.absolute(Kind::ClosedForm, "number of flips in 22 s", (times.len() as f64, 5.0), 0.0, reason);
+        checks.absolute(
+            Kind::ClosedForm,
+            "number of flips in 22 s",
+            (times.len() as f64, exact.len() as f64),
+            0.0,
+            reason,
+        );
     }
-    for (k, name) in ["first", "second"].iter().enumerate() {
+    for (k, (name, exact)) in ["first", "second"].into_iter().zip(exact).enumerate() {
         let found = [0, 1, 2].map(|run| [times[run].get(k).copied().unwrap_or(f64::NAN)]);
-        let exact = [FIRST + k as f64 * PERIOD];
-        check_second_order(checks, &format!("{name} flip [s]"), [&found[0], &found[1], &found[2]], &exact);
+        check_second_order(checks, &format!("{name} flip [s]"), [&found[0], &found[1], &found[2]], &[exact]);
     }
     Ok(())
 }
@@ -171,7 +205,7 @@ fn symmetric(checks: &mut Checks) -> Outcome {
     for radius in RADII {
         let what = format!("symmetric body, ρ∞ = {radius}");
         let scene = scene(TOP, TOP_TURNS, 5.0, 4e-3, radius);
-        check_table(checks, &scene, &TOP_TABLE, &what)?;
+        check_table(checks, &scene, TOP_FILE, &[1.0, 2.0, 5.0], &what)?;
         let runs = halved_twice(&scene)?;
         let momentum = [0, 1, 2].map(|k| momentum_error(&runs[k], TOP, TOP_TURNS, 1));
         check_vanishes(checks, &format!("angular momentum, {what}"), momentum);

@@ -1,5 +1,6 @@
 //! Axial, torsional and bending vibrations of straight rods, slender and stocky, held in three ways.
 
+use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use cosserat::scene::{Joint, JointKind, Material, Modes, Rod, Scene, Section};
@@ -14,9 +15,9 @@ use crate::placement::{Placement, placements};
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "Timoshenko's equations by Huang's determinants and by transfer matrices; axial and torsional: closed form";
     vec![
-        Case::new("frequencies::slender", SOURCE, slender),
-        Case::new("frequencies::stocky", SOURCE, stocky),
-        Case::new("frequencies::hinged", SOURCE, hinged),
+        Case::new("frequencies::slender", SOURCE, slender).reads(&[FILE]),
+        Case::new("frequencies::stocky", SOURCE, stocky).reads(&[FILE]),
+        Case::new("frequencies::hinged", SOURCE, hinged).reads(&[FILE]),
         Case::new(
             "frequencies::euler_bernoulli",
             "closed form, nπ; Timoshenko's first correction",
@@ -61,22 +62,22 @@ pub fn pinned() -> Vec<Joint> {
     ["rod@0", "rod@1"].map(|end| joint(JointKind::Spherical, "ground", end, None)).to_vec()
 }
 
-const CANTILEVER_SLENDER: [f64; 4] = [44.507761371491, 278.83829464891, 780.36180279496, 1528.0730999438];
-const FREE_SLENDER: [f64; 4] = [283.15676649508, 780.17407148778, 1528.4271205408, 2524.3158363282];
-const PINNED_SLENDER: [f64; 4] = [124.92784170008, 499.54507040657, 1123.3538473319, 1995.5279270757];
+/// Bending, by Huang's determinants and transfer matrices.
+pub const FILE: &str = "continuous/straight_rod_frequencies.csv";
 
-const CANTILEVER: [[f64; 4]; 2] = [
-    [1000.6246201473, 5475.8155239241, 13195.262487713, 22124.177754934],
-    [510.41997042299, 3075.5280150176, 8143.8261694031, 14881.784733412],
-];
-const FREE: [[f64; 4]; 2] = [
-    [5831.3752173192, 13810.944738715, 23230.350989293, 33048.177806374],
-    [3166.2431263635, 8281.7214190502, 15205.607791103, 23358.292447847],
-];
-const PINNED: [[f64; 4]; 2] = [
-    [2731.4392490104, 9609.5836970889, 18601.475218734, 28521.722275337],
-    [1421.9251261011, 5462.8784980208, 11589.778644889, 19219.167394178],
-];
+/// The four lowest of the `slender` or `stocky` rod, as `cantilever`, `free` or `pinned`, that bend it about `e_y`,
+/// `e_z` or `any` axis.
+pub fn bending(
+    checks: &mut Checks,
+    rod: &str,
+    support: &str,
+    axis: &str,
+) -> Result<[f64; 4], Box<dyn Error>> {
+    let table = checks.reference(FILE)?;
+    let rows = table.select(&[("rod", rod), ("support", support), ("axis", axis)])?;
+    let omegas: Vec<f64> = rows.iter().map(|row| row.number("omega")).collect::<Result<_, _>>()?;
+    Ok(omegas.try_into().map_err(|_| "not four modes")?)
+}
 
 const ELEMENTS: usize = 6;
 const DEGREE: usize = 8;
@@ -141,11 +142,14 @@ pub fn lowest(families: &[&[f64]], count: usize) -> Vec<f64> {
 
 fn slender(checks: &mut Checks) -> Outcome {
     let scene = |joints| straight(circle(0.01), ELEMENTS, DEGREE, joints, 1);
+    let clamped = twice(&bending(checks, "slender", "cantilever", "any")?);
+    let free = twice(&bending(checks, "slender", "free", "any")?);
+    let both = twice(&bending(checks, "slender", "pinned", "any")?);
     for placement in placements(LENGTH) {
         let cantilever = scene(vec![clamp("rod@0")]);
-        compare(checks, "slender cantilever", &cantilever, &placement, 0, &twice(&CANTILEVER_SLENDER))?;
-        compare(checks, "slender, free", &scene(Vec::new()), &placement, 6, &twice(&FREE_SLENDER))?;
-        compare(checks, "slender, pinned", &scene(pinned()), &placement, 1, &twice(&PINNED_SLENDER))?;
+        compare(checks, "slender cantilever", &cantilever, &placement, 0, &clamped)?;
+        compare(checks, "slender, free", &scene(Vec::new()), &placement, 6, &free)?;
+        compare(checks, "slender, pinned", &scene(pinned()), &placement, 1, &both)?;
     }
     Ok(())
 }
@@ -155,14 +159,20 @@ fn stocky(checks: &mut Checks) -> Outcome {
     let odd = |speed: f64| [1.0, 3.0, 5.0].map(|n| n * FRAC_PI_2 * speed / LENGTH);
     let whole = |speed: f64| [1.0, 2.0, 3.0].map(|n| n * PI * speed / LENGTH);
     let scene = |joints| straight(stocky_section(), ELEMENTS, DEGREE, joints, 1);
+    let mut tables = Vec::new();
+    for support in ["cantilever", "free", "pinned"] {
+        let planes = [bending(checks, "stocky", support, "e_y")?, bending(checks, "stocky", support, "e_z")?];
+        tables.push(planes);
+    }
+    let [clamped, free, both] = [&tables[0], &tables[1], &tables[2]];
     for placement in placements(LENGTH) {
-        let families: [&[f64]; 4] = [&CANTILEVER[0], &CANTILEVER[1], &odd(axial), &odd(torsional)];
+        let families: [&[f64]; 4] = [&clamped[0], &clamped[1], &odd(axial), &odd(torsional)];
         let cantilever = scene(vec![clamp("rod@0")]);
         compare(checks, "stocky cantilever", &cantilever, &placement, 0, &lowest(&families, 10))?;
-        let families: [&[f64]; 4] = [&FREE[0], &FREE[1], &whole(axial), &whole(torsional)];
+        let families: [&[f64]; 4] = [&free[0], &free[1], &whole(axial), &whole(torsional)];
         compare(checks, "stocky, free", &scene(Vec::new()), &placement, 6, &lowest(&families, 10))?;
         // Spherical joints hold both ends along the axis and let them turn about it.
-        let families: [&[f64]; 4] = [&PINNED[0], &PINNED[1], &whole(axial), &whole(torsional)];
+        let families: [&[f64]; 4] = [&both[0], &both[1], &whole(axial), &whole(torsional)];
         compare(checks, "stocky, pinned", &scene(pinned()), &placement, 1, &lowest(&families, 10))?;
     }
     Ok(())
@@ -172,13 +182,14 @@ fn stocky(checks: &mut Checks) -> Outcome {
 fn hinged(checks: &mut Checks) -> Outcome {
     let hinges =
         ["rod@0", "rod@1"].map(|end| joint(JointKind::Revolute, "ground", end, Some([0.0, 1.0, 0.0])));
+    let about = [bending(checks, "stocky", "pinned", "e_y")?, bending(checks, "stocky", "pinned", "e_z")?];
     for placement in placements(LENGTH) {
         let scene = straight(stocky_section(), ELEMENTS, DEGREE, hinges.to_vec(), 12);
         let found = frequencies(&placement.apply(&scene))?;
         // A clamped rod has, by Timoshenko's equations, the nonzero frequencies of none of the others about e_z.
         let [axial, torsional] = speeds();
         let fixed = [axial, torsional].map(|speed| PI * speed / LENGTH);
-        for omega in PINNED[0].into_iter().take(3).chain(fixed) {
+        for omega in about[0].into_iter().take(3).chain(fixed) {
             let nearest =
                 found.iter().copied().min_by(|a, b| (a - omega).abs().total_cmp(&(b - omega).abs()));
             checks.relative(
@@ -193,7 +204,7 @@ fn hinged(checks: &mut Checks) -> Outcome {
         checks.above(
             Kind::ClosedForm,
             format!("hinged, the lowest over that of the pinned rod about e_z, {}", placement.name),
-            lowest / PINNED[1][0],
+            lowest / about[1][0],
             1.0,
             "hinges about e_y clamp the rod about e_z: stiffer than pinned, and nothing is free",
         );

@@ -1,5 +1,6 @@
 //! Vibrations of rods joined to a body, to another rod and to themselves.
 
+use std::error::Error;
 use std::f64::consts::TAU;
 
 use cosserat::scene::{
@@ -7,11 +8,12 @@ use cosserat::scene::{
 };
 
 use crate::case::{Case, Checks, Kind, Outcome};
-use crate::cases::frequencies::{LENGTH, lowest, speeds, steel, stocky_section, straight};
+use crate::cases::frequencies::{FILE, LENGTH, bending, lowest, speeds, steel, stocky_section, straight};
 use crate::measure::clamp;
 use crate::motion::{frequencies, joint, vibrate};
 use crate::pieces::circle;
 use crate::placement::placements;
+use crate::references::Table;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
@@ -20,23 +22,27 @@ pub fn all() -> Vec<Case> {
             "frequencies_joined::tip_body",
             "transfer matrix of Timoshenko's rod with a rigid body, and Ritz",
             tip_body,
-        ),
+        )
+        .reads(&[TIP_FILE]),
         Case::new(
             "frequencies_joined::frame",
             "transfer matrix of Simo & Vu-Quoc's (1988) frame, and Ritz",
             frame,
-        ),
+        )
+        .reads(&[FRAME_FILE]),
         Case::new(
             "frequencies_joined::mechanisms",
             "counting freedoms; rods free at both ends, by symmetry (frequencies::slender)",
             mechanisms,
-        ),
+        )
+        .reads(&[FILE]),
         Case::new(
             "frequencies_joined::ring",
             "Fourier's 3×3 matrices of the closed Cosserat ring, and transfer matrices",
             ring,
-        ),
-        Case::new("frequencies_joined::ring_orders", "the same; order 2p", ring_orders),
+        )
+        .reads(&[RING_FILE]),
+        Case::new("frequencies_joined::ring_orders", "the same; order 2p", ring_orders).reads(&[RING_FILE]),
     ]
 }
 
@@ -58,40 +64,22 @@ fn with_body(position: [f64; 3], elements: usize, degree: usize) -> Scene {
     scene
 }
 
-const BODIES: [([f64; 3], [f64; 8]); 2] = [
-    (
-        [1.15, 0.0, 0.0],
-        [
-            288.904495318,
-            577.9208685917,
-            1518.174496194,
-            2287.786087314,
-            3104.472362884,
-            4344.641679772,
-            6090.776639036,
-            8106.09250865,
-        ],
-    ),
-    (
-        [1.15, 0.1, -0.2],
-        [
-            285.0929678669,
-            561.7154247802,
-            1410.586300344,
-            1850.361494288,
-            2805.292484066,
-            4304.615337863,
-            6268.949193728,
-            8065.611561342,
-        ],
-    ),
-];
+const TIP_FILE: &str = "continuous/tip_body_frequencies.csv";
+const FRAME_FILE: &str = "continuous/frame_frequencies.csv";
+const RING_FILE: &str = "continuous/ring_frequencies.csv";
+
+/// Where the body's centre of mass is, and what the file calls it.
+const BODIES: [([f64; 3], &str); 2] = [([1.15, 0.0, 0.0], "in line"), ([1.15, 0.1, -0.2], "aside")];
 
 fn tip_body(checks: &mut Checks) -> Outcome {
-    for (position, table) in BODIES {
+    let table = checks.reference(TIP_FILE)?;
+    for (position, body) in BODIES {
+        let rows = table.select(&[("body", body)])?;
+        let exact: Vec<f64> = rows.iter().map(|row| row.number("omega")).collect::<Result<_, _>>()?;
         for placement in placements(LENGTH) {
             let found = frequencies(&placement.apply(&with_body(position, 4, 8)))?;
-            for (n, (measured, omega)) in found.into_iter().zip(table).enumerate() {
+            for (n, &omega) in exact.iter().enumerate() {
+                let measured = found.get(n).copied().unwrap_or(f64::NAN);
                 checks.relative(
                     Kind::ClosedForm,
                     format!("body at {position:?}, ω{}, {}", n + 1, placement.name),
@@ -135,30 +123,20 @@ pub fn frame_scene(elements: usize, degree: usize) -> Scene {
     }
 }
 
-const FRAME: [f64; 10] = [
-    0.328370037081,
-    0.3369218364584,
-    0.5549204690742,
-    0.9042608655283,
-    1.118390578392,
-    1.763764259674,
-    2.585907734418,
-    2.747994738681,
-    3.019840409324,
-    4.002062389264,
-];
-
 fn frame(checks: &mut Checks) -> Outcome {
+    let table = checks.reference(FRAME_FILE)?;
+    let exact = table.rows().map(|row| row.number("omega")).collect::<Result<Vec<_>, _>>()?;
     for placement in placements(10.0) {
         let scene = Scene { modes: Some(Modes { count: 10 }), ..frame_scene(4, 8) };
         let solution = vibrate(&placement.apply(&scene))?;
-        for (n, (mode, omega)) in solution.modes.iter().zip(FRAME).enumerate() {
+        for (n, &omega) in exact.iter().enumerate() {
+            let measured = solution.modes.get(n).map_or(f64::NAN, |mode| mode.angular_frequency);
             // The fastest wave is the axial one, c = √(1e6/1).
             let highest = 1e3 * (64.0 * 4.0) / 10.0;
             checks.relative(
                 Kind::ClosedForm,
                 format!("frame, ω{}, {}", n + 1, placement.name),
-                (mode.angular_frequency, omega),
+                (measured, omega),
                 1e-10 + 0.5 * f64::EPSILON * (highest / omega).powi(2),
                 "the reference is good to 1e-10; half of ε (c p² n/L)²/ω² of rounding in ω²",
             );
@@ -177,7 +155,7 @@ fn frame(checks: &mut Checks) -> Outcome {
 /// Two slender rods in line, hinged to each other: as many zeros as freedoms, and where both bend alike the hinge
 /// carries nothing, so that each vibrates as if it were free.
 fn mechanisms(checks: &mut Checks) -> Outcome {
-    const LOWEST_FREE: f64 = 283.15676649508;
+    let [lowest_free, ..] = bending(checks, "slender", "free", "any")?;
     let across = Some([0.0, 0.0, 1.0]);
     let between = |kind, axis| joint(kind, "rod@1", "next@0", axis);
     let hinge = joint(JointKind::Revolute, "ground", "rod@0", across);
@@ -194,7 +172,7 @@ fn mechanisms(checks: &mut Checks) -> Outcome {
         for placement in placements(LENGTH) {
             let solution = vibrate(&placement.apply(&scene))?;
             let found: Vec<f64> = solution.modes.iter().map(|mode| mode.angular_frequency).collect();
-            let at_rest = found.iter().filter(|omega| omega.abs() < 1e-6 * LOWEST_FREE).count();
+            let at_rest = found.iter().filter(|omega| omega.abs() < 1e-6 * lowest_free).count();
             checks.absolute(
                 Kind::ClosedForm,
                 format!("zeros, {what}, {}", placement.name),
@@ -211,7 +189,7 @@ fn mechanisms(checks: &mut Checks) -> Outcome {
             );
             // Both planes, or the one about the hinge's axis.
             let bound = 1e-7;
-            let near = found.iter().filter(|omega| (*omega / LOWEST_FREE - 1.0).abs() < bound).count();
+            let near = found.iter().filter(|omega| (*omega / lowest_free - 1.0).abs() < bound).count();
             checks.absolute(
                 Kind::ClosedForm,
                 format!("frequencies of a free rod, {what}, {}", placement.name),
@@ -233,21 +211,22 @@ pub fn closed_ring(section: Section, material: Option<Material>, elements: usize
     Scene { rod: vec![rod], joint: vec![closed], ..Scene::default() }
 }
 
-/// In plane and out of plane, n = 2, 3, 4.
-const THIN: [[f64; 3]; 2] = [
-    [33.966744357414, 96.066974164779, 184.18543510603],
-    [32.991451427746, 94.657545190605, 182.58119028736],
-];
-const THICK: [[f64; 3]; 2] =
-    [[667.20656910901, 1847.5278625284, 3446.3277353542], [648.3060536503, 1820.0680289728, 3414.5962548728]];
+/// The lowest `count` elastic frequencies of the `thin` or `thick` ring: two of each kind for n > 0 waves around, one for
+/// n = 0.
+fn elastic(table: &Table, ring: &str, count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
+    let mut all = Vec::new();
+    for row in table.select(&[("ring", ring)])? {
+        let modes = if row.word("n")? == "0" { 1 } else { 2 };
+        all.extend(std::iter::repeat_n(row.number("omega")?, modes));
+    }
+    Ok(lowest(&[&all], count))
+}
 
 fn ring(checks: &mut Checks) -> Outcome {
-    for (what, diameter, table, single) in
-        [("thin", 0.01, THIN, None), ("thick", 0.2, THICK, Some(3580.5743701972))]
-    {
-        let twice: Vec<f64> = table.iter().flatten().flat_map(|&omega| [omega, omega]).collect();
-        let mut expected = lowest(&[&twice], 12);
-        expected.extend(single);
+    let table = checks.reference(RING_FILE)?;
+    // Both bend with n = 2, 3, 4; the thirteenth of the thick one turns all sections alike.
+    for (what, diameter, count) in [("thin", 0.01, 12), ("thick", 0.2, 13)] {
+        let expected = elastic(&table, what, count)?;
         for placement in placements(1.0) {
             let mut scene = placement.apply(&closed_ring(circle(diameter), Some(steel()), 12, 8));
             scene.modes = Some(Modes { count: 6 + expected.len() });
@@ -294,9 +273,12 @@ fn ring_orders(checks: &mut Checks) -> Outcome {
         (r12, 2, [16, 32, 64]),
         (r12, 3, [12, 24, 48]),
     ];
-    for (section, exact, what) in
-        [(circle(0.2), [THICK[1][0], THICK[0][0]], "thick"), (circle(0.01), [THIN[1][0], THIN[0][0]], "thin")]
-    {
+    let table = checks.reference(RING_FILE)?;
+    for (section, what) in [(circle(0.2), "thick"), (circle(0.01), "thin")] {
+        let of = |plane| -> Result<f64, Box<dyn Error>> {
+            table.row(&[("ring", what), ("plane", plane), ("n", "2"), ("branch", "1")])?.number("omega")
+        };
+        let exact = [of("out")?, of("in")?];
         for (interpolation, degree, meshes) in ladders {
             let mut errors = [const { Vec::new() }; 2];
             for elements in meshes {

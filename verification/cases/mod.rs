@@ -8,6 +8,8 @@ mod continuous;
 mod convergence_orders;
 mod cut_rods;
 mod derivatives;
+mod exudyn_bodies;
+mod exudyn_chains;
 mod flexible_pendulum;
 mod four_bar;
 mod free_bodies;
@@ -72,6 +74,8 @@ pub fn all() -> Vec<Case> {
         convergence_orders::all(),
         cut_rods::all(),
         derivatives::all(),
+        exudyn_bodies::all(),
+        exudyn_chains::all(),
         flexible_pendulum::all(),
         four_bar::all(),
         free_bodies::all(),

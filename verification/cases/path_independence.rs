@@ -19,7 +19,8 @@ pub fn all() -> Vec<Case> {
     vec![
         Case::new("path_independence::spring", "helical spring of section 4.1, wire end at 2 N", |checks| {
             compare(checks, &spring(), &SPRING)
-        }),
+        })
+        .slow(),
         Case::new("path_independence::bend", "45° bend (Bathe & Bolourchi 1979) at 600", |checks| {
             compare(checks, &bend(), &BEND)
         }),

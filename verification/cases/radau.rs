@@ -13,16 +13,10 @@ use crate::steps::{distance, energy_error, force_at, position_at, quaternion_at,
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new(
-            "radau::heavy_top",
-            "Euler's equations by Taylor series, scripts/rigid_bodies.py; order 5 of the method",
-            top,
-        ),
-        Case::new(
-            "radau::chain",
-            "Kane's equations in seven coordinates, scripts/rigid_bodies.py; order 5 of the method",
-            chain,
-        ),
+        Case::new("radau::heavy_top", "Euler's equations by Taylor series; order 5 of the method", top)
+            .reads(&[heavy_top::FILE]),
+        Case::new("radau::chain", "Kane's equations in seven coordinates; order 5 of the method", chain)
+            .reads(body_chain::FILES),
         Case::new("radau::ring", "order 5 of the method; generalized-alpha", ring),
     ]
 }
@@ -43,7 +37,7 @@ const ORDER_REASON: &str = "2s − 1 with s = 3 stages, joints at velocity level
 
 fn top(checks: &mut Checks) -> Outcome {
     let steps = [500, 1000, 2000];
-    let (time, position, quaternion, force) = heavy_top::TABLE[1];
+    let (time, position, quaternion, force) = heavy_top::exact(checks, 1.0)?;
     for placement in placements(1.0) {
         let runs = runs(&placement.apply(&heavy_top::scene(["ground", "top"])), time, steps)?;
         let (mut x, mut q, mut f, mut energy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -77,7 +71,7 @@ fn top(checks: &mut Checks) -> Outcome {
 
 fn chain(checks: &mut Checks) -> Outcome {
     let steps = [50, 100, 200];
-    let (time, bodies, force) = &body_chain::MOVING[1];
+    let (time, bodies, force) = &body_chain::exact(checks, true, 1.0)?;
     let placement = &placements(1.0)[0];
     let runs = runs(&body_chain::scene(true, 1e-2), *time, steps)?;
     for (index, (position, quaternion)) in bodies.iter().enumerate() {

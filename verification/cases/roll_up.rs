@@ -15,7 +15,7 @@ use crate::tip::{Exact, check_tip, tip};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new("roll_up::closed_form", "closed form; Euler 1744", closed_form),
+        Case::new("roll_up::closed_form", "closed form; Euler 1744", closed_form).slow(),
         Case::new("roll_up::se3", "closed form; Euler 1744", se3),
         Case::new("roll_up::linear_r12", "closed form of the discrete equations", linear_r12),
     ]

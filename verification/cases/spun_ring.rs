@@ -7,18 +7,18 @@ use cosserat::scene::{Basis, Dynamics, LoadKind, Scene, Section};
 use cosserat::solution::Solution;
 use nalgebra::Vector3;
 
-use crate::case::{Case, Checks, Kind, Outcome};
+use crate::case::{Case, Checks, Kind, Outcome, Trajectory};
 use crate::cases::frequencies_joined::closed_ring;
 use crate::measure::{load, probe};
 use crate::motion::{Recursion, follow, place};
 use crate::placement::{Placement, placements};
+use crate::references::Table;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    const SOURCE: &str =
-        "three ordinary equations by symmetry, two formulations and two integrators (scripts/flexible.py)";
+    const SOURCE: &str = "three ordinary equations by symmetry, two formulations and two integrators";
     vec![
-        Case::new("spun_ring::order_in_time", SOURCE, order_in_time),
+        Case::new("spun_ring::order_in_time", SOURCE, order_in_time).reads(&[FILE]),
         Case::new("spun_ring::symmetry", "rotation of the ring onto itself", symmetry),
         Case::new("spun_ring::gravity", "a constant acceleration adds the motion of a point mass", gravity),
     ]
@@ -36,24 +36,15 @@ struct Instant {
     place: [f64; 2],
 }
 
-const TABLE: [Instant; 2] = [
-    Instant {
-        time: 1.0,
-        radius: 1.1963470144128,
-        turn: 1.6296985222657,
-        kinetic: 41.230894148731,
-        strain: 12.115886651266,
-        place: [1.1939263403549, 0.076066238904702],
-    },
-    Instant {
-        time: 2.0,
-        radius: 1.4177703167051,
-        turn: 5.6821233228582,
-        kinetic: 136.84186875205,
-        strain: 54.837346908547,
-        place: [-0.79497817437291, -1.1739175325383],
-    },
-];
+const FILE: &str = "continuous/spun_ring.csv";
+
+impl Instant {
+    fn new(table: &Table, time: f64) -> Result<Self, Box<dyn Error>> {
+        let row = table.row(&[("t", &format!("{time:?}"))])?;
+        let [radius, turn, kinetic, strain] = row.numbers("radius section kinetic strain")?;
+        Ok(Self { time, radius, turn, kinetic, strain, place: row.numbers("x y")? })
+    }
+}
 
 const ELEMENTS: usize = 4;
 const DEGREE: usize = 5;
@@ -102,13 +93,15 @@ fn errors(solution: &Solution, step: f64, exact: &Instant, placement: &Placement
 }
 
 fn order_in_time(checks: &mut Checks) -> Outcome {
+    let table = checks.reference(FILE)?;
+    let instants = [Instant::new(&table, 1.0)?, Instant::new(&table, 2.0)?];
     let steps = [200, 400, 800];
     let mut all = [const { Vec::new() }; 8];
     for count in steps {
         let step = 2.0 / count as f64;
         for placement in placements(1.0) {
             let solution = follow(&placement.apply(&scene(step, ELEMENTS, DEGREE)))?;
-            for (k, exact) in TABLE.iter().enumerate() {
+            for (k, exact) in instants.iter().enumerate() {
                 let errors = errors(&solution, step, exact, &placement);
                 for (j, error) in errors.into_iter().enumerate() {
                     let list = &mut all[4 * k + j];
@@ -126,12 +119,15 @@ fn order_in_time(checks: &mut Checks) -> Outcome {
                 }
             }
             if count > steps[0] {
+                if count == steps[2] {
+                    path(checks, &solution, &table)?;
+                }
                 break;
             }
         }
     }
     for (k, errors) in all.iter().enumerate() {
-        let exact = &TABLE[k / 4];
+        let exact = &instants[k / 4];
         let name = format!("{} at {} s", NAMES[k % 4], exact.time);
         if exact.time == 1.0 {
             checks.order(
@@ -151,6 +147,22 @@ fn order_in_time(checks: &mut Checks) -> Outcome {
              only this is asked",
         );
     }
+    Ok(())
+}
+
+/// The way of the point that starts at the bottom.
+fn path(checks: &mut Checks, solution: &Solution, table: &Table) -> Outcome {
+    checks.trajectory(Trajectory {
+        title: "Spun ring: the point that starts at the bottom".to_string(),
+        axes: ["x [m]", "y [m]"],
+        measured: (0..solution.rows.len())
+            .step_by(4)
+            .map(|row| place(solution, row, 0))
+            .map(|r| [r.x, r.y])
+            .collect(),
+        source: "three ordinary equations",
+        reference: table.rows().map(|row| row.numbers("x y")).collect::<Result<_, _>>()?,
+    });
     Ok(())
 }
 

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::frequencies::{STRETCHED, UNLOADED_MASSLESS};
+use super::frequencies;
+use super::stiffness;
 use super::swing::{envelope, extrema, peak};
 use super::{
     COILS, DIAMETER, POISSON, Pendulum, RADIUS, SHEAR, bob_mass, bob_spin_inertia, paper_steps, places, slope,
@@ -11,11 +12,14 @@ use crate::case::{Case, Checks, Kind, Outcome};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new(
-        "wilberforce::beat",
-        "Berg & Marshall 1991; scripts/wilberforce.py; the authors' program",
-        beat,
-    )]
+    vec![
+        Case::new(
+            "wilberforce::beat",
+            "Berg & Marshall 1991; shooting and Chebyshev collocation; the authors' program",
+            beat,
+        )
+        .reads(&[frequencies::FILE, stiffness::FILE]),
+    ]
 }
 
 /// ω² = ½ [ω_θ² + ω_z² ± √((ω_θ² − ω_z²)² + ε²/(m I))], k = G d⁴/(64 n R³), δ = k R² (1 + ν cos² α) and
@@ -37,9 +41,9 @@ fn period([slow, fast]: [f64; 2]) -> f64 {
 
 /// What the closed form leaves out, relative to ω: d²/8R² of shear and tan² α of pitch, halved by the root; and the
 /// modes in which the bob swings like a pendulum, which repel that of z: K_xz²/(m² (ω_z² − ω_x²)) of ω_z², halved.
-fn left_out() -> f64 {
-    let coupling = 2.501170237 / bob_mass();
-    let (z, x) = (UNLOADED_MASSLESS[2].powi(2), UNLOADED_MASSLESS[0].powi(2));
+fn left_out(coupling: f64, unloaded: &[f64]) -> f64 {
+    let coupling = coupling / bob_mass();
+    let (z, x) = (unloaded[2].powi(2), unloaded[0].powi(2));
     0.5 * (0.125 * (DIAMETER / RADIUS).powi(2) + slope().powi(2)) + 0.5 * coupling * coupling / (z * (z - x))
 }
 
@@ -49,6 +53,9 @@ fn beat(checks: &mut Checks) -> Outcome {
     let digits = "half a unit of the last printed digit";
     checks.absolute(Kind::Published, "beat of the formula [s]", (period(formula), 4.66), 0.005, digits);
 
+    let exact = frequencies::exact(checks, "unloaded", "massless")?;
+    let left_out = left_out(stiffness::exact(checks, "unloaded")?[(0, 2)], &exact);
+    let exact_unloaded = period([exact[2], exact[3]]);
     let massless = Pendulum { weight: false, inertia: false, ..Pendulum::new(12, 8) };
     let (unloaded, _) = massless.modes(place, 6)?;
     let unloaded = [unloaded[2], unloaded[3]];
@@ -56,17 +63,18 @@ fn beat(checks: &mut Checks) -> Outcome {
         "what the formula leaves out: shear, the pitch in second order, the modes of the bob as a pendulum";
     for (found, closed) in unloaded.into_iter().zip(formula) {
         let pair = (found, closed);
-        checks.relative(Kind::Published, "ω of the pair, unloaded [rad/s]", pair, left_out(), reason);
+        checks.relative(Kind::Published, "ω of the pair, unloaded [rad/s]", pair, left_out, reason);
     }
-    let spread = left_out() * (formula[0] + formula[1]) / (formula[1] - formula[0]);
+    let spread = left_out * (formula[0] + formula[1]) / (formula[1] - formula[0]);
     let pair = (period(unloaded), period(formula));
     checks.relative(Kind::Published, "beat, unloaded, against the formula [s]", pair, spread, reason);
     let digits = "1e-8 in either frequency is 2.3e-7 of their difference";
-    checks.relative(Kind::ClosedForm, "beat, unloaded [s]", (period(unloaded), 4.645721044816), 3e-7, digits);
+    checks.relative(Kind::ClosedForm, "beat, unloaded [s]", (period(unloaded), exact_unloaded), 3e-7, digits);
 
     let (stretched, _) = Pendulum::new(12, 8).modes(place, 4)?;
     let stretched = period([stretched[2], stretched[3]]);
-    let exact = period([STRETCHED[2], STRETCHED[3]]);
+    let exact = frequencies::exact(checks, "stretched", "inertia")?;
+    let exact = period([exact[2], exact[3]]);
     checks.relative(Kind::ClosedForm, "beat, stretched [s]", (stretched, exact), 3e-7, digits);
     let pair = (stretched, 3.66);
     checks.absolute(

@@ -9,12 +9,14 @@ use crate::case::{Case, Checks, Kind, Outcome};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new("wilberforce::space_and_time", "order 2p in space, 2 in time; Richardson", space_and_time),
+        Case::new("wilberforce::space_and_time", "order 2p in space, 2 in time; Richardson", space_and_time)
+            .slow(),
         Case::new(
             "wilberforce::converged",
             "Exudyn, 48 two-node elements, h = 5 ms; p = 6 with extrapolation in time",
             converged,
-        ),
+        )
+        .slow(),
     ]
 }
 

@@ -8,11 +8,14 @@ use crate::case::{Case, Checks, Kind, Outcome};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new(
-        "wilberforce::energy",
-        "conservation; the authors' program: 1e-3 J of 0.39 J with 18 elements, 12 times less with 36",
-        energy,
-    )]
+    vec![
+        Case::new(
+            "wilberforce::energy",
+            "conservation; the authors' program: 1e-3 J of 0.39 J with 18 elements, 12 times less with 36",
+            energy,
+        )
+        .slow(),
+    ]
 }
 
 const END: f64 = 8.0;

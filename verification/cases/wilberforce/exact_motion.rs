@@ -11,58 +11,25 @@ use nalgebra::{Vector3, Vector4};
 
 use super::swing::Swing;
 use super::{Pendulum, places, steps};
-use crate::case::{Case, Checks, Kind, Outcome};
+use crate::case::{Case, Checks, Kind, Outcome, Trajectory};
+use crate::references::Table;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new(
-        "wilberforce::exact_motion",
-        "scripts/wilberforce_motion.py: 1e-9 m, quaternion 2e-8, α 5e-8 rad",
-        exact_motion,
-    )]
+    vec![
+        Case::new(
+            "wilberforce::exact_motion",
+            "boundary-value problem of the wire at every instant: 1e-9 m, quaternion 2e-8, α 5e-8 rad",
+            exact_motion,
+        )
+        .reads(&[FILE])
+        .slow(),
+    ]
 }
 
-/// t, centre of mass, quaternion, α.
-type Exact = (f64, [f64; 3], [f64; 4], f64);
-
-const EXACT: [Exact; 6] = [
-    (
-        0.5,
-        [-0.00100272694, -0.00034988906, -0.05268517957],
-        [0.926684659, -0.010260709, 0.042214200, -0.373320535],
-        -0.766472118,
-    ),
-    (
-        1.0,
-        [-0.00418730770, 0.00104651157, -0.08999070222],
-        [0.984224640, 0.022865004, 0.079137551, 0.156576814],
-        0.313847238,
-    ),
-    (
-        1.5,
-        [-0.00291688504, 0.00375687356, -0.08176451195],
-        [0.378374659, 0.004117552, -0.020965206, 0.925405924],
-        2.365499316,
-    ),
-    (
-        2.0,
-        [-0.00008355435, 0.00342907274, -0.07067074238],
-        [0.997078593, 0.020075473, 0.050608137, 0.053573047],
-        0.105558199,
-    ),
-    (
-        3.0,
-        [0.00372381398, 0.00502428817, -0.02484861837],
-        [0.991835525, 0.090959044, -0.072101694, 0.052821303],
-        0.119242576,
-    ),
-    (
-        4.0,
-        [0.00028234254, 0.00412145059, -0.10146230472],
-        [0.987391199, 0.024184830, 0.074916089, 0.137336426],
-        0.274267182,
-    ),
-];
+const FILE: &str = "continuous/wilberforce_motion.csv";
+/// Where the motion is compared [s]: first as orders as well.
+const TIMES: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
 
 const STEPS: [f64; 3] = [4e-3, 2e-3, 1e-3];
 /// Of the reference, and as much again for the mesh.
@@ -98,12 +65,14 @@ const NAMES: [&str; 4] = ["position [m]", "rotation", "α [rad]", "joint forces 
 
 fn exact_motion(checks: &mut Checks) -> Outcome {
     let swings = swings()?;
-    for (index, (time, position, quaternion, alpha)) in EXACT.into_iter().enumerate() {
+    let table = checks.reference(FILE)?;
+    for (index, time) in TIMES.into_iter().enumerate() {
+        let row = table.row(&[("t", &format!("{time:?}"))])?;
         let found: Vec<[Vec<f64>; 4]> = swings.iter().map(|swing| at(swing, time)).collect();
         let exact = [
-            position.to_vec(),
-            rotation_matrix(&Vector4::from(quaternion)).iter().copied().collect(),
-            vec![alpha],
+            row.numbers::<3>("x y z")?.to_vec(),
+            rotation_matrix(&Vector4::from(row.numbers("qw qx qy qz")?)).iter().copied().collect(),
+            vec![row.number("alpha")?],
         ];
         for what in 0..3 {
             // A rotation matrix changes by √2 per radian, a quaternion by half: 2√2 times the quaternion's error.
@@ -140,9 +109,29 @@ fn exact_motion(checks: &mut Checks) -> Outcome {
             order(checks, &format!("{} at {time} s", NAMES[3]), &errors);
         }
     }
+    paths(checks, &swings[2], &table)?;
     weight_and_inertia(checks, &swings[2])?;
     energy(checks, &swings);
     placed(checks, &swings[0])
+}
+
+/// z and α over time.
+fn paths(checks: &mut Checks, swing: &Swing, table: &Table) -> Outcome {
+    let numbers = [("z", "z [m]", swing.z()), ("alpha", "α [rad]", swing.alpha())];
+    for (column, axis, values) in numbers {
+        let points = swing.times.iter().zip(values).map(|(&t, value)| [t, value]);
+        checks.trajectory(Trajectory {
+            title: format!("Wilberforce pendulum with a massless wire: {axis}"),
+            axes: ["t [s]", axis],
+            measured: points.step_by(10).collect(),
+            source: "boundary-value problem",
+            reference: table
+                .rows()
+                .map(|row| row.numbers(&format!("t {column}")))
+                .collect::<Result<_, _>>()?,
+        });
+    }
+    Ok(())
 }
 
 fn order(checks: &mut Checks, name: &str, errors: &[f64]) {

@@ -10,51 +10,28 @@ pub fn all() -> Vec<Case> {
     vec![
         Case::new(
             "wilberforce::frequencies",
-            "scripts/wilberforce.py: shooting and Chebyshev collocation, 1e-11 relative",
+            "shooting and Chebyshev collocation of the continuous equations, 1e-11 relative",
             values,
-        ),
+        )
+        .reads(&[FILE]),
         Case::new(
             "wilberforce::frequency_order",
-            "scripts/wilberforce.py; order 2p of the discretisation",
+            "shooting and Chebyshev collocation; order 2p of the discretisation",
             order,
-        ),
+        )
+        .reads(&[FILE]),
     ]
 }
 
-/// Angular frequencies [rad/s] with a massless wire.
-pub const UNLOADED_MASSLESS: [f64; 6] =
-    [9.290429107497, 9.294925815816, 14.804983666863, 16.157450861205, 39.973428490412, 39.993703831421];
-pub const STRETCHED_MASSLESS: [f64; 6] =
-    [13.154403091613, 13.253228466808, 14.856256910180, 16.574105425118, 52.846911881299, 53.846779278813];
-/// With the inertia of the wire.
-pub const UNLOADED: [f64; 12] = [
-    9.289278251145,
-    9.293614370552,
-    14.795062654911,
-    16.146787529035,
-    39.890676645235,
-    39.923856639279,
-    715.9363680505,
-    794.7516006501,
-    994.7090033624,
-    1033.586714437,
-    1038.653404663,
-    1126.859255995,
-];
-pub const STRETCHED: [f64; 12] = [
-    13.150559158515,
-    13.249651001766,
-    14.846872477809,
-    16.563689902162,
-    52.750598360869,
-    53.725704297844,
-    722.0788826807,
-    796.5397373208,
-    989.1961361816,
-    1049.581000861,
-    1273.538979528,
-    1366.395617067,
-];
+/// By shooting and Chebyshev collocation.
+pub const FILE: &str = "continuous/wilberforce_frequencies.csv";
+
+/// Angular frequencies [rad/s] about the `unloaded` or `stretched` shape, of a `massless` wire or with its `inertia`.
+pub fn exact(checks: &mut Checks, shape: &str, wire: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    let table = checks.reference(FILE)?;
+    let rows = table.select(&[("shape", shape), ("wire", wire)])?;
+    rows.iter().map(|row| row.number("omega")).collect()
+}
 
 const BOUND: f64 = 1e-7;
 const REASON: &str = "between neighbouring nodes the wire is EA p²/h = 4e8 N/m stiff in tension, 4e6 times as stiff as \
@@ -63,18 +40,19 @@ const REASON: &str = "between neighbouring nodes the wire is EA p²/h = 4e8 N/m 
                       in the reference";
 
 fn values(checks: &mut Checks) -> Outcome {
-    let problems: [(&str, bool, bool, &[f64]); 4] = [
-        ("unloaded, massless wire", false, false, &UNLOADED_MASSLESS),
-        ("stretched, massless wire", true, false, &STRETCHED_MASSLESS),
-        ("unloaded", false, true, &UNLOADED),
-        ("stretched", true, true, &STRETCHED),
-    ];
-    for (name, weight, inertia, exact) in problems {
+    for (shape, wire) in [
+        ("unloaded", "massless"),
+        ("stretched", "massless"),
+        ("unloaded", "inertia"),
+        ("stretched", "inertia"),
+    ] {
+        let exact = exact(checks, shape, wire)?;
+        let (weight, inertia) = (shape == "stretched", wire == "inertia");
         for placement in places() {
             let pendulum = Pendulum { weight, inertia, ..Pendulum::new(12, 8) };
             let (found, solution) = pendulum.modes(&placement, exact.len())?;
-            let name = format!("{name}, {}", placement.name);
-            for (k, (&found, &exact)) in found.iter().zip(exact).enumerate() {
+            let name = format!("{shape}, wire: {wire}, {}", placement.name);
+            for (k, (&found, &exact)) in found.iter().zip(&exact).enumerate() {
                 let label = format!("ω{} [rad/s], {name}", k + 1);
                 checks.relative(Kind::ClosedForm, label, (found, exact), BOUND, REASON);
             }
@@ -91,19 +69,20 @@ fn values(checks: &mut Checks) -> Outcome {
 const GROUPS: [&[usize]; 4] = [&[0, 1], &[2], &[3], &[4, 5]];
 
 /// Relative errors of Σ ω² of each group about the stretched shape, and the number of complex pairs.
-fn errors(elements: usize, degree: usize) -> Result<(Vec<f64>, usize), Box<dyn Error>> {
+fn errors(exact: &[f64], elements: usize, degree: usize) -> Result<(Vec<f64>, usize), Box<dyn Error>> {
     let (found, solution) = Pendulum::new(elements, degree).modes(&places()[0], 6)?;
     let sum = |values: &[f64], group: &[usize]| group.iter().map(|&k| values[k].powi(2)).sum::<f64>();
-    let error = |group: &&[usize]| (sum(&found, group) / sum(&STRETCHED, group) - 1.0).abs();
+    let error = |group: &&[usize]| (sum(&found, group) / sum(exact, group) - 1.0).abs();
     Ok((GROUPS.iter().map(error).collect(), solution.warnings.len()))
 }
 
 fn order(checks: &mut Checks) -> Outcome {
+    let exact = exact(checks, "stretched", "inertia")?;
     let problems = [(1, [144, 288, 576], 2.0), (2, [36, 72, 144], 4.0), (3, [18, 24, 36], 6.0)];
     for (degree, meshes, expected) in problems {
         let mut table = Vec::new();
         for elements in meshes {
-            let (errors, complex) = errors(elements, degree)?;
+            let (errors, complex) = errors(&exact, elements, degree)?;
             table.push(errors);
             let name = format!("complex pairs, p = {degree}, {elements} elements");
             let reason =

@@ -3,8 +3,8 @@
 //! A steel wire of 1 mm, three coils of radius 16 mm and pitch 1 mm, leads from the bob (ξ = 0, z = 0) to a clamp
 //! (ξ = 1, z = 3 mm). The bob is a steel cylinder about the axis of the helix, its centre of mass half its height and
 //! half a wire's diameter below z = 0. Gravity acts on the bob only; there is no damping; it is released at rest from
-//! the unstressed spring. The references of `scripts/wilberforce.py` and `scripts/wilberforce_motion.py` come from
-//! the continuous rod equations, without finite elements.
+//! the unstressed spring. The references under `references/continuous/` come from the continuous rod equations, without
+//! finite elements.
 
 mod authors;
 mod beat;

@@ -17,7 +17,7 @@ pub fn all() -> Vec<Case> {
             "generalized-alpha, extrapolated to no step",
             limit_of_generalized_alpha,
         ),
-        Case::new("wilberforce::radau_halves", "the same motion with half the step", halves),
+        Case::new("wilberforce::radau_halves", "the same motion with half the step", halves).slow(),
     ]
 }
 

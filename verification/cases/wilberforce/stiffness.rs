@@ -16,10 +16,9 @@ use crate::placement::Placement;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    let source = "scripts/wilberforce.py: flexibility of the helix in closed form; linearised equations about the \
-                  stretched shape";
+    let source = "flexibility of the helix in closed form; linearised equations about the stretched shape";
     vec![
-        Case::new("wilberforce::stiffness", source, stiffness),
+        Case::new("wilberforce::stiffness", source, stiffness).reads(&[FILE]),
         Case::new(
             "wilberforce::reciprocity",
             "Betti: K is symmetric; order 2p of the discretisation, see petrov_galerkin.rs",
@@ -32,29 +31,19 @@ pub fn all() -> Vec<Case> {
 const FORCE: f64 = 0.03;
 const LEVER: f64 = 16e-3;
 
-/// Of the unloaded shape; entries that vanish up to the small pitch are left out.
-const UNLOADED: [(usize, usize, f64); 10] = [
-    (0, 0, 251.5678288630),
-    (1, 1, 251.4912026075),
-    (2, 2, 102.968678319),
-    (3, 3, 0.1296820290833),
-    (4, 4, 0.1297128150874),
-    (5, 5, 0.0324294362114),
-    (0, 2, 2.501170237),
-    (0, 4, 5.031356577),
-    (1, 3, -5.029824052),
-    (2, 5, -3.767864753e-3),
-];
+/// Flexibility of the helix in closed form, and the linearised equations about the stretched shape.
+pub const FILE: &str = "continuous/wilberforce_stiffness.csv";
 
-/// Of the shape stretched by the weight.
-const STRETCHED: [[f64; 6]; 6] = [
-    [177.2226657361, -0.2551283849, 16.9112536103, 0.0926586259, 5.1476563640, 0.0171186632],
-    [-0.2551283849, 178.8093648259, 0.9773200454, -5.1805321029, -0.0549031764, -0.0414179839],
-    [16.9112536103, 0.9773200454, 112.5338821906, -0.0083582740, 0.7405435828, 0.1883510948],
-    [0.0926586259, -5.1805321029, -0.0083582740, 0.2983747815, 0.0058541398, 0.0044487757],
-    [5.1476563640, -0.0549031764, 0.7405435828, 0.0058541398, 0.2973725006, 0.0009419567],
-    [0.0171186632, -0.0414179839, 0.1883510948, 0.0044487757, 0.0009419567, 0.0322605028],
-];
+/// K about the `unloaded` or `stretched` shape.
+pub fn exact(checks: &mut Checks, shape: &str) -> Result<Matrix6<f64>, Box<dyn Error>> {
+    let table = checks.reference(FILE)?;
+    let rows = table.select(&[("shape", shape)])?;
+    let entries: Vec<f64> = rows.iter().map(|row| row.number("k")).collect::<Result<_, _>>()?;
+    if entries.len() != 36 {
+        return Err(format!("{} entries of K", entries.len()).into());
+    }
+    Ok(Matrix6::from_row_slice(&entries))
+}
 
 /// Pose of the bob under a force or moment.
 fn pose(
@@ -104,21 +93,17 @@ const REASON: &str = "of √(K_ii K_jj): 0.06 N move the bob by 6e-4 m or 1/26 o
                       difference of 0.06 N, four times, half of them by chance: 3e-7; a mesh of order 16";
 
 fn stiffness(checks: &mut Checks) -> Outcome {
-    for placement in places() {
-        let fine = Pendulum::new(12, 8);
-        let unloaded = measured(&Pendulum { weight: false, ..fine.clone() }, &placement)?;
-        for (i, j, exact) in UNLOADED {
-            let bound = BOUND * (unloaded[(i, i)] * unloaded[(j, j)]).sqrt();
-            let name = format!("K[{i}, {j}], unloaded, {}", placement.name);
-            checks.absolute(Kind::ClosedForm, name, (unloaded[(i, j)], exact), bound, REASON);
-        }
-        let stretched = measured(&fine, &placement)?;
-        for i in 0..6 {
-            for j in 0..6 {
-                let bound = BOUND * (stretched[(i, i)] * stretched[(j, j)]).sqrt();
-                let name = format!("K[{i}, {j}], stretched, {}", placement.name);
-                let pair = (stretched[(i, j)], STRETCHED[i][j]);
-                checks.absolute(Kind::ClosedForm, name, pair, bound, REASON);
+    for (shape, weight) in [("unloaded", false), ("stretched", true)] {
+        let exact = exact(checks, shape)?;
+        for placement in places() {
+            let found = measured(&Pendulum { weight, ..Pendulum::new(12, 8) }, &placement)?;
+            for i in 0..6 {
+                for j in 0..6 {
+                    let bound = BOUND * (found[(i, i)] * found[(j, j)]).sqrt();
+                    let name = format!("K[{i}, {j}], {shape}, {}", placement.name);
+                    let pair = (found[(i, j)], exact[(i, j)]);
+                    checks.absolute(Kind::ClosedForm, name, pair, bound, REASON);
+                }
             }
         }
     }

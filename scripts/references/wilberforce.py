@@ -15,16 +15,19 @@ Linearised, spatial rotation phi, (dr, phi, dn, dm)' :
     dn'  = -w^2 rho A dr,                            dm' = -w^2 A rho I A^T phi - dr' x n - r' x dn.
 At the bob dn = -w^2 m_b u,  dm = -w^2 A Theta A^T theta - (dr - u) x n - (r - x_S) x dn;  at the clamp dr = phi = 0.
 
-How the accuracy is judged: everything twice. Integration by Gauss collocation of order 12 with two step lengths; K also
-by differences of nonlinear solutions (1e-8), the loaded shape by DOP853; frequencies with rod mass by shooting
-(bisection on the determinant, Gauss) and by a dense Chebyshev collocation of the whole eigenproblem at two sizes.
-Needs numpy and scipy; about two minutes.
+Accuracy: shape 1e-12 m (angles 1e-11), stiffness 1e-11 of the largest entries, frequencies 1e-11, relative; everything is
+done twice. Integration by Gauss collocation of order 12 with two step lengths; K of the unloaded shape in closed form
+and from the linearised equations, K of the stretched one also by differences of nonlinear solutions (to 1e-8), its shape
+by DOP853; frequencies with the wire's inertia by shooting (bisection on the determinant) and by a dense Chebyshev
+collocation of the whole eigenproblem at two sizes. The script fails if any two differ by more.
 """
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from scipy.optimize import brentq
+
+from datapackage import Field, Table, fields, root
 
 RHO, SHEAR, NU, R, D, COILS, PITCH = 7850.0, 81e9, 0.23, 16e-3, 1e-3, 3, 1e-3
 YOUNG = 2 * SHEAR * (1 + NU)
@@ -272,119 +275,135 @@ def dense(shape_at, x_s, r0, n, turn, points, count):
     return np.sqrt(1 / mu)
 
 
-def main():
-    print("mass", repr(MASS), "inertia", THETA.tolist(), "E", YOUNG, "wire length", repr(LENGTH), "wire mass", RHO_A * LENGTH)
-    np.set_printoptions(precision=12, linewidth=170)
+def rotation_vector(turn):
+    rotation = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+    size = np.linalg.norm(rotation)
+    return rotation / size * np.arctan2(size, (np.trace(turn) - 1) / 2) if size else rotation
 
-    print("\n== a. unloaded shape")
-    f1, f2 = flexibility(30), flexibility(47)
-    k_a = np.linalg.inv(f1)
-    print("two quadratures differ by", np.abs(f1 / f2 - 1)[np.abs(f1) > 1e-12 * np.abs(f1).max()].max())
-    print(repr(k_a))
-    print("K_zz, K_tt, K_zt", *(repr(float(k_a[i])) for i in ((2, 2), (5, 5), (2, 5))))
-    w_a = frequencies(k_a, np.eye(3))
-    print("massless frequencies", w_a)
-    x_s, turn, stages, _ = shape(0.0, 60)
-    r0 = helix(0)[0]
-    k_t = tangent(x_s, r0, stages, np.zeros(3))
-    print("the linearised equations give K with a difference of", np.abs(k_t - k_a).max() / np.abs(k_a).max(), "frequencies", np.abs(frequencies(k_t, np.eye(3)) / w_a - 1).max())
 
-    print("\n== b. shape stretched by the weight")
-    found = []
-    for steps in (60, 90):
-        x_s, turn, stages, error = shape(1.0, steps)
-        n = WEIGHT * EZ
-        r0 = x_s - turn @ (S0 - helix(0)[0])
-        k = tangent(x_s, r0, stages, n)
-        found.append((x_s, turn, stages, r0, k))
-        angle = np.arctan2(-turn[0, 1], turn[0, 0])
-        rotation = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
-        size = np.linalg.norm(rotation)
-        vector = rotation / size * np.arctan2(size, (np.trace(turn) - 1) / 2)
-        print(f"steps {steps}: residual {error:.1e}")
-        print("  x_S", [float(v) for v in x_s], "stretch", repr(float(S0[2] - x_s[2])))
-        print("  rotation vector of the bob", [float(v) for v in vector], "alpha (zyx)", repr(float(angle)),
-              "wire end", [float(v) for v in r0])
-        print("  largest asymmetry of K", np.abs(k - k.T).max(), "of", np.abs(k).max())
-        print("  massless frequencies", frequencies(k, turn))
-    x_s, turn, stages, r0, k_b = found[1]
-    print(repr(k_b))
-    print("K: differences between the step lengths", np.abs(found[0][4] - k_b).max() / np.abs(k_b).max(), "frequencies",
-          np.abs(frequencies(found[0][4], turn) / frequencies(k_b, turn) - 1).max())
-    # K by differences of the nonlinear problem: flexibility columns
+def by_differences(x_s, turn):
+    """K of the stretched shape: the columns of its inverse by small loads on the bob and nonlinear solutions."""
     columns = []
     for i in range(6):
         size = 1e-4 * (WEIGHT if i < 3 else WEIGHT * R)
         ends = []
         for sign in (1, -1):
-            f, m = WEIGHT * EZ, np.zeros(3)
             e = sign * size * np.eye(6)[i]
-            x, a, _, _ = solve_shape(f - e[:3], m - e[3:], x_s, 60)  # the wire carries minus the load on the bob
-            rel = a @ turn.T
-            rot = np.array([rel[2, 1] - rel[1, 2], rel[0, 2] - rel[2, 0], rel[1, 0] - rel[0, 1]]) / 2
-            ends.append(np.concatenate([x, rot]))
+            x, a, _, _ = solve_shape(WEIGHT * EZ - e[:3], -e[3:], x_s, 60)  # the wire carries minus the load on the bob
+            ends.append(np.concatenate([x, rotation_vector(a @ turn.T)]))
         columns.append((ends[0] - ends[1]) / (2 * size))
-    k_d = np.linalg.inv(np.column_stack(columns))
-    print("differences of nonlinear solutions: K", np.abs(k_d - k_b).max() / np.abs(k_b).max(), "frequencies",
-          np.abs(frequencies(k_d, turn) / frequencies(k_b, turn) - 1).max())
+    return np.linalg.inv(np.column_stack(columns))
 
-    # shape once more, by DOP853 from the clamp
-    def f(s, y, x_s=x_s):
-        frame, r = y[3:].reshape(3, 3), y[:3]
-        nn = WEIGHT * EZ
-        return np.concatenate([frame @ (G0 + frame.T @ nn / CG), (frame @ skew(K0 + frame.T @ cross(x_s - r, nn) / CK)).ravel()])
+
+def by_dop853(x_s, at):
+    """The stretched shape from the clamp down, at arc lengths that fall."""
+    def rates(s, y):
+        frame, r, n = y[3:].reshape(3, 3), y[:3], WEIGHT * EZ
+        bend = skew(K0 + frame.T @ cross(x_s - r, n) / CK)
+        return np.concatenate([frame @ (G0 + frame.T @ n / CG), (frame @ bend).ravel()])
     top, frame = helix(LENGTH)
     start = np.concatenate([top, frame.ravel()])
-    s = solve_ivp(f, (LENGTH, 0), start, "DOP853", rtol=1e-13, atol=1e-16)
-    print("DOP853 places the wire end", np.abs(s.y[:3, -1] - r0).max(), "m away, frame", np.abs(s.y[3:, -1].reshape(3, 3) @ helix(0)[1].T - turn).max())
+    return solve_ivp(rates, (LENGTH, 0), start, "DOP853", at, rtol=1e-13, atol=1e-16).y.T
 
-    print("\n== Wilberforce pair and beat")
-    k = SHEAR * D ** 4 / (64 * COILS * R ** 3)
-    alpha = np.arctan(SLOPE)
-    delta, eps = k * R ** 2 * (1 + NU * np.cos(alpha) ** 2), k * R * NU * np.sin(2 * alpha)
-    wz, wt = k / MASS, delta / THETA[2]
-    root = np.sqrt((wt - wz) ** 2 + eps ** 2 / (MASS * THETA[2]))
-    bm = np.sqrt([(wz + wt - root) / 2, (wz + wt + root) / 2])
-    print("Berg & Marshall", bm, "beat", 2 * np.pi / (bm[1] - bm[0]))
-    for name, kk, q in (("unloaded", k_a, np.eye(3)), ("stretched", k_b, turn)):
-        w = frequencies(kk, q)
-        m2 = np.diag([MASS, THETA[2]])
-        pair = np.sqrt(eigh(kk[np.ix_((2, 5), (2, 5))], m2, eigvals_only=True))
-        values, vectors = eigh((kk + kk.T) / 2, mass_matrix(q))
-        share = (vectors ** 2 * np.concatenate([[MASS] * 3, THETA])[:, None])
-        two = [i for i in range(6) if share[2, i] + share[5, i] > 0.5]
-        print(name, "pair of the full 6x6", w[two], "share of z and theta_z", (share[2] + share[5])[two], "beat",
-              2 * np.pi / (w[two[1]] - w[two[0]]), "; 2x2 alone", pair, "beat", 2 * np.pi / (pair[1] - pair[0]))
 
-    print("\n== c. with the wire's inertia")
+def apart(a, b):
+    return np.abs(a - b).max() / np.abs(b).max()
+
+
+def unloaded():
+    """Shape and tangent stiffness, twice; K in closed form."""
+    closed = np.linalg.inv(flexibility(47))
+    found = []
+    for steps in (60, 90):
+        x_s, turn, stages, _ = shape(0.0, steps)
+        found.append((x_s, turn, stages, helix(0)[0], closed))
+    linear = tangent(found[1][0], helix(0)[0], found[1][2], np.zeros(3))
+    errors = apart(np.linalg.inv(flexibility(30)), closed), apart(linear, closed)
+    same = np.abs(frequencies(linear, np.eye(3)) / frequencies(closed, np.eye(3)) - 1).max()
+    print("unloaded: K by two quadratures and by the linearised equations", errors, "frequencies", same)
+    assert max(errors) < 1e-11 and same < 1e-11
+    return found
+
+
+def stretched():
+    found = []
+    for steps in (60, 90):
+        x_s, turn, stages, error = shape(1.0, steps)
+        r0 = x_s - turn @ (S0 - helix(0)[0])
+        found.append((x_s, turn, stages, r0, tangent(x_s, r0, stages, WEIGHT * EZ)))
+    (x_c, turn_c, _, _, k_c), (x_s, turn, _, r0, k) = found
+    end = by_dop853(x_s, [0.0])[0]
+    shapes = np.abs(x_c - x_s).max(), np.abs(end[:3] - r0).max()
+    turns = np.abs(turn_c - turn).max(), np.abs(end[3:].reshape(3, 3) @ helix(0)[1].T - turn).max()
+    nonlinear = apart(by_differences(x_s, turn), k)
+    same = np.abs(frequencies(k_c, turn_c) / frequencies(k, turn) - 1).max()
+    print("stretched: shapes", shapes, "turns", turns, "frequencies", same)
+    print("stretched: K", apart(k_c, k), "its asymmetry", apart(k.T, k), "by differences", nonlinear)
+    assert max(shapes) < 1e-12 and max(turns) < 1e-11 and apart(k_c, k) < 1e-11 and nonlinear < 1e-8 and same < 1e-11
+    return found
+
+
+def with_inertia(found, load):
+    """Twelve frequencies by shooting, judged by another step and by Chebyshev collocation of two sizes."""
+    n = load * WEIGHT * EZ
+    problems = [(stages, x_s, r0, n, turn) for x_s, turn, stages, r0, _ in found]
+
+    def at_points(points):
+        if not load:
+            return lambda x: helix(x * LENGTH)
+        xi = chebyshev(points)[0]
+        y = by_dop853(found[0][0], xi[::-1] * LENGTH)
+        table = {round(x, 14): row for x, row in zip(xi[::-1], y)}
+        return lambda x: (table[round(x, 14)][:3], table[round(x, 14)][3:].reshape(3, 3))
+
+    d1, d2 = (dense(at_points(p), *problems[0][1:], p, 12) for p in (56, 72))
+    imaginary = max(np.abs(d1.imag).max(), np.abs(d2.imag).max())
+    d1, d2 = np.sort(d1.real), np.sort(d2.real)
+    a, b = (shooting(d2, *problem) for problem in problems)
+    errors = [np.abs(x / y - 1).max() for x, y in ((a, b), (d1, d2), (b, d2))]
+    print("with inertia: shooting, Chebyshev, shooting from Chebyshev", errors, "imaginary", imaginary)
+    assert max(errors) < 1e-11 and not np.isnan(b).any()
+    return b
+
+
+def store(name, title, columns, rows, accuracy, method):
+    Table(
+        source="continuous", name=name, title="Wilberforce pendulum: " + title, fields=columns, rows=rows, accuracy=accuracy,
+        accuracy_method=method, parameters={"steps": 90, "judgedBySteps": 60, "chebyshevPoints": [56, 72]},
+        tools=["numpy", "scipy"],
+    ).write(root())
+
+
+def main():
+    found = {"unloaded": unloaded(), "stretched": stretched()}
+    key = Field("shape", "", "unloaded, or stretched by the bob's weight", type="string")
+    stiffness, omega = [], []
     for name, load in (("unloaded", 0.0), ("stretched", 1.0)):
-        n = load * WEIGHT * EZ
-        if load:
-            problems = [(g[2], g[0], g[3], n, g[1]) for g in found]
-        else:
-            problems = [(shape(0.0, steps)[2], S0, helix(0)[0], n, np.eye(3)) for steps in (60, 90)]
-
-        def at_points(points):
-            """The shape at Chebyshev points: the helix, or DOP853 from point to point."""
-            if not load:
-                return lambda x: helix(x * LENGTH)
-            xi = chebyshev(points)[0]
-            y = solve_ivp(f, (LENGTH, 0), start, "DOP853", xi[::-1] * LENGTH, rtol=1e-13, atol=1e-16).y
-            table = {round(x, 14): y[:, i] for i, x in enumerate(xi[::-1])}
-            return lambda x: (table[round(x, 14)][:3], table[round(x, 14)][3:].reshape(3, 3))
-
-        d1, d2 = (dense(at_points(p), *problems[0][1:], p, 12) for p in (56, 72))
-        order = np.argsort(d1.real), np.argsort(d2.real)
-        d1, d2 = d1[order[0]], d2[order[1]]
-        print(name)
-        print("  Chebyshev 56", d1.real, "largest imaginary part", np.abs(d1.imag).max())
-        print("  Chebyshev 72", d2.real, "largest imaginary part", np.abs(d2.imag).max())
-        a = shooting(d2.real, *problems[0])
-        b = shooting(d2.real, *problems[1])
-        print("  shooting, 60 steps", [float(f"{v:.14g}") for v in a])
-        print("  shooting, 90 steps", [float(f"{v:.14g}") for v in b])
-        print("  relative differences: shooting", np.nanmax(np.abs(a / b - 1)), "Chebyshev", np.abs(d1.real / d2.real - 1).max(),
-              "between", np.nanmax(np.abs(b / d2.real - 1)))
+        _, turn, _, _, k = found[name][1]
+        stiffness += [[name, i, j, float(k[i, j])] for i in range(6) for j in range(6)]
+        for wire, values in (("massless", frequencies(k, turn)), ("inertia", with_inertia(found[name], load))):
+            omega += [[name, wire, mode + 1, value] for mode, value in enumerate(values.tolist())]
+    store("wilberforce_stiffness",
+          "6x6 stiffness at the bob's centre of mass, (force, moment) = K (displacement, rotation), inertial",
+          [key, Field("row", "1", "0 to 5: force along x, y, z, moment about x, y, z"),
+           Field("column", "1", "likewise: displacement, rotation"),
+           Field("k", "N/m, N, N m", "entry", tolerance=1e-10, relative_tolerance=1e-12)],
+          stiffness, "1e-11 of the largest entries",
+          "closed form, linearised equations with two steps, differences of nonlinear solutions")
+    store("wilberforce_frequencies", "angular frequencies about both shapes",
+          [key, Field("wire", "", "massless, or with its inertia", type="string"),
+           Field("mode", "1", "number from the lowest on"),
+           Field("omega", "rad/s", "angular frequency", relative_tolerance=3e-12)],
+          omega, "1e-11, relative",
+          "two steps; shooting against a dense collocation of the whole eigenproblem with two numbers of points")
+    x_s, turn, _, r0, _ = found["stretched"][1]
+    store("wilberforce_hanging", "the bob at rest under its weight",
+          [*fields("x y z", "m", "centre of mass of the bob, {}", tolerance=1e-12),
+           *fields("rx ry rz", "rad", "rotation vector of the bob, {}", tolerance=1e-11),
+           Field("alpha", "rad", "angle of A = R_x(gamma) R_y(beta) R_z(alpha): atan2(-A12, A11)", tolerance=1e-11),
+           *fields("ex ey ez", "m", "end of the wire at the bob, {}", tolerance=1e-12)],
+          [[*x_s.tolist(), *rotation_vector(turn).tolist(), float(np.arctan2(-turn[0, 1], turn[0, 0])), *r0.tolist()]],
+          "1e-12 m, 1e-11 rad", "Gauss collocation with two steps; DOP853 from the clamp")
 
 
 if __name__ == "__main__":

@@ -1,23 +1,24 @@
 """Motion of the Wilberforce pendulum with a *massless* wire (`inertia = false`), from the continuous rod equations.
 
-The bob is a rigid body (position, unit quaternion, velocity, body angular velocity); at every instant the wire is in static
-equilibrium, so its force and moment on the bob follow from a boundary-value problem: integrate
+The bob is a rigid body (position, unit quaternion, velocity, body angular velocity); at every instant the wire is in
+static equilibrium, so its force and moment on the bob follow from a boundary-value problem: integrate
     r' = A (G0 + C_g^-1 A^T n),  A' = A [k0 + C_k^-1 A^T m]x,  n constant,  m = M + (x_S - r) x n
-from the bob's end to the clamp and find (n, M) that meet the clamp (multiple shooting, Newton). Released at rest from the unstressed helix; weight of the
-bob only; no damping. Data as in wilberforce.py.
+from the bob's end to the clamp and find (n, M) that meet the clamp (multiple shooting, Newton). Released at rest from
+the unstressed helix; weight of the bob only; no damping. Data as in wilberforce.py.
 
-Accuracy: the wire with two step lengths (DOP853's eighth-order formula), the motion with two tolerances; total energy
-(kinetic, strain of the wire, weight) printed.
-Usage: wilberforce_motion.py END_TIME WIRE_STEPS TOLERANCE      (8 s with 40 steps and 1e-9: a few minutes)
+Accuracy: position 1e-9 m, quaternion 2e-8, alpha 5e-8 rad, judged by a second run with fewer pieces of wire (DOP853's
+eighth-order formula on each) and ten times the tolerance in time, at every stored instant, and by the total energy
+(kinetic, strain of the wire, weight), which stays zero. The script fails if its runs differ by more than it states.
 """
 
-import sys
 from math import sqrt
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as formula
+from scipy.spatial.transform import Rotation
 
+from datapackage import Field, Table, fields, root
 from wilberforce import CG, CK, K0, LENGTH, MASS, R, S0, SLOPE, STRETCH, THETA, helix
 
 GRAVITY = 9.81
@@ -28,7 +29,6 @@ ROWS = [A[i, :i].copy() for i in range(STAGES)]
 
 def quaternion(frame):
     """Of a rotation matrix with a positive trace or not."""
-    from scipy.spatial.transform import Rotation
     x, y, z, w = Rotation.from_matrix(frame).as_quat()
     return np.array([w, x, y, z])
 
@@ -58,7 +58,7 @@ class Wire:
 
     def __init__(self, steps):
         self.steps, self.h = steps, LENGTH / steps
-        self.wrench, self.count, self.energy = np.zeros(6), 0, 0.0
+        self.wrench, self.energy = np.zeros(6), 0.0
         nodes = [helix(self.h * i) for i in range(steps + 1)]
         q = [quaternion(a) for _, a in nodes]
         for i in range(1, steps + 1):
@@ -109,7 +109,6 @@ class Wire:
             for i in range(STAGES):
                 k[i] = self.rates(y + self.h * (ROWS[i] @ flat[:i]).reshape(y.shape) if i else y, w, x)
             y = (y + self.h * (B @ flat).reshape(y.shape)).reshape(8, 14, n)
-            self.count += 1
             gap = y[:7, 0].T - self.y[1:]
             slopes = ((y[:7, 1:] - y[:7, :1]) / self.size[:, None]).transpose(2, 0, 1)  # (n, 7, 13)
             chain = np.zeros((n + 1, 7, 7))  # change of the nodes: by the wrench, and the constant part
@@ -135,53 +134,81 @@ class Wire:
         raise RuntimeError(f"wire: change {size}")
 
 
-def main():
-    end, steps, tolerance = float(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
-    wire = Wire(steps)
+END, SEGMENT, SAMPLES = 4.0, 0.25, 10
+# (Pieces of the wire, tolerance in time): what judges, and what is stored.
+COARSE, FINE = (40, 1e-9), (56, 1e-10)
+# Accuracy of position, quaternion, alpha; and of the energy [J].
+STATED, ENERGY = (1e-9, 2e-8, 5e-8), 1e-9
 
-    def f(t, y):
+
+def motion(pieces, tolerance):
+    """Times, states and largest energy, segment by segment, so that the wire's last solution starts the next."""
+    wire = Wire(pieces)
+
+    def rates(t, y):
         x, q, v, w = y[:3], y[3:7], y[7:10], y[10:]
         unit = q / sqrt(q @ q)
         wrench, _ = wire.solve(x, unit)
         moment = rotate(unit * [1, -1, -1, -1], wrench[3:])
         a = wrench[:3] / MASS - [0, 0, GRAVITY]
-        return np.concatenate([v, 0.5 * product(q, np.concatenate([[0], w])), a, (moment - np.cross(w, THETA * w)) / THETA])
+        turn = 0.5 * product(q, np.concatenate([[0], w]))
+        return np.concatenate([v, turn, a, (moment - np.cross(w, THETA * w)) / THETA])
 
-    y0 = np.concatenate([S0, [1, 0, 0, 0], np.zeros(6)])
-    scale = np.array([1e-1] * 3 + [1] * 4 + [1] * 3 + [10] * 3)
-    y, energies, evaluations, fine = y0, [], 0, []
-    print("time x y z qw qx qy qz alpha  energy")
-    for t in np.arange(0, end + 1e-9, 0.25):
-        if t > 0:  # segment by segment, so that the wire's last solution starts the next
-            s = solve_ivp(f, (t - 0.25, t), y, "DOP853", rtol=tolerance, atol=tolerance * scale, first_step=0.01, dense_output=True)
-            fine.append(s.sol(np.arange(t - 0.25, t - 1e-9, 0.0025)))
-            y, evaluations = s.y[:, -1], evaluations + s.nfev
+    def energy(y):
         q = y[3:7] / sqrt(y[3:7] @ y[3:7])
         _, strain = wire.solve(y[:3], q)
-        e = 0.5 * MASS * y[7:10] @ y[7:10] + 0.5 * y[10:] @ (THETA * y[10:]) + MASS * GRAVITY * (y[2] - S0[2]) + strain
-        energies.append(e)
-        print(f"{t:.2f}", *(f"{v:.13f}" for v in (*y[:3], *q, alpha_of(q[:, None])[0])), f"{e:.3e}", flush=True)
-    fine = np.hstack(fine)
-    envelope("z", fine[2], 0.0025)
-    envelope("alpha", alpha_of(fine[3:7]), 0.0025)
-    print("largest energy error", max(map(abs, energies)), "; wire solved", wire.count, "times; evaluations", evaluations)
+        kinetic = 0.5 * MASS * y[7:10] @ y[7:10] + 0.5 * y[10:] @ (THETA * y[10:])
+        return kinetic + MASS * GRAVITY * (y[2] - S0[2]) + strain
+
+    y = np.concatenate([S0, [1, 0, 0, 0], np.zeros(6)])
+    scale = np.array([1e-1] * 3 + [1] * 4 + [1] * 3 + [10] * 3)
+    times, states, worst = [0.0], [y], 0.0
+    for k in range(round(END / SEGMENT)):
+        span = k * SEGMENT, (k + 1) * SEGMENT
+        s = solve_ivp(rates, span, y, "DOP853", rtol=tolerance, atol=tolerance * scale, first_step=0.01, dense_output=True)
+        y = s.y[:, -1]
+        inner = span[0] + SEGMENT / SAMPLES * np.arange(1, SAMPLES)
+        times += [*inner, span[1]]
+        states += [*s.sol(inner).T, y]
+        worst = max(worst, abs(energy(y)))
+        print(f"{pieces} pieces, {span[1]:.2f} s: {y[:3]}, energy so far {worst:.1e} J", flush=True)
+    return np.array(times), np.array(states), worst
 
 
-def alpha_of(q):
-    """Of quaternions of any norm, columns; alpha of A = R_x(gamma) R_y(beta) R_z(alpha): atan2(-A12, A11), unwrapped."""
-    q = q / np.sqrt((q * q).sum(0))
-    return np.unwrap(np.arctan2(2 * (q[0] * q[3] - q[1] * q[2]), 1 - 2 * (q[2] ** 2 + q[3] ** 2)))
+def poses(states):
+    """Position, unit quaternion and alpha of A = R_x(gamma) R_y(beta) R_z(alpha), atan2(-A12, A11), unwrapped."""
+    q = states[:, 3:7] / np.linalg.norm(states[:, 3:7], axis=1)[:, None]
+    w, x, y, z = q.T
+    return states[:, :3], q, np.unwrap(np.arctan2(2 * (w * z - x * y), 1 - 2 * (y**2 + z**2)))[:, None]
 
 
-def envelope(name, values, step):
-    """Extrema by a parabola through three samples; half the difference of consecutive ones at their mid-time."""
-    d = np.diff(values)
-    at = np.where(d[:-1] * d[1:] < 0)[0] + 1
-    b, c = (values[at + 1] - values[at - 1]) / 2, (values[at + 1] - 2 * values[at] + values[at - 1]) / 2
-    time, peak = step * (at - b / (2 * c)), values[at] - b * b / (4 * c)
-    print(name, "extrema (t, value):", " ".join(f"({t:.4f}, {p:.7f})" for t, p in zip(time, peak)))
-    half, middle = np.abs(np.diff(peak)) / 2, (time[1:] + time[:-1]) / 2
-    print(name, "envelope (t, half difference):", " ".join(f"({t:.3f}, {h:.5f})" for t, h in zip(middle, half)))
+def main():
+    times, states, energy = motion(*FINE)
+    _, coarse, other_energy = motion(*COARSE)
+    found = poses(states)
+    apart = [np.abs(a - b).max() for a, b in zip(found, poses(coarse))]
+    print("the runs differ by", apart, "energies", energy, other_energy)
+    assert all(a <= b for a, b in zip(apart, STATED)) and max(energy, other_energy) < ENERGY
+    position, quaternion, alpha = STATED
+    Table(
+        source="continuous",
+        name="wilberforce_motion",
+        title="Wilberforce pendulum with a massless wire: motion of the bob",
+        fields=[
+            Field("t", "s", "time"),
+            *fields("x y z", "m", "centre of mass of the bob, inertial, {}", tolerance=0.3 * position),
+            *fields("qw qx qy qz", "1", "quaternion from the bob's basis to the inertial one, {}", tolerance=0.3 * quaternion),
+            Field("alpha", "rad", "of A = R_x(gamma) R_y(beta) R_z(alpha): atan2(-A12, A11), unwrapped", tolerance=0.3 * alpha),
+        ],
+        rows=[[round(t, 10), *row] for t, row in zip(times.tolist(), np.hstack(found).tolist())],
+        accuracy=f"position {position:.0e} m, quaternion {quaternion:.0e}, alpha {alpha:.0e} rad",
+        accuracy_method="two runs with different pieces of the wire and tolerances in time, compared at every instant; "
+                        f"total energy constant to {ENERGY:.0e} J",
+        parameters={
+            "pieces": FINE[0], "tolerance": FINE[1], "judgedByPieces": COARSE[0], "judgedByTolerance": COARSE[1],
+        },
+        tools=["numpy", "scipy"],
+    ).write(root())
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 """Natural frequencies of Cosserat (Timoshenko) rods about their unstressed shape, without finite elements.
 
-  single   straight rod, slender and stocky: bending (rotary inertia, shear factor 1), axial, torsional; cantilever, free-free,
-           pinned-pinned.
-  tip      cantilever with a rigid body at its end (centre of mass off the end, along the axis).
-  frame    right-angle frame of two legs (data of Simo & Vu-Quoc 1988), clamped at one end.
-  ring     closed circular ring: in plane and out of plane.
+  straight_rod_frequencies  straight rod, slender and stocky: bending (rotary inertia, shear factor 1); cantilever,
+                            free-free, pinned-pinned.
+  tip_body_frequencies      cantilever with a rigid body at its end, its centre of mass off the end.
+  frame_frequencies         right-angle frame of two legs (data of Simo & Vu-Quoc 1988), clamped at one end.
+  ring_frequencies          closed circular ring: in plane and out of plane.
 
 Bending in one plane: EI p'' + GA (w' - p) = rho I p_tt, GA (w'' - p') = rho A w_tt.
 With b^2 = rho A w^2 L^4/EI, r^2 = rho I/(rho A L^2), s^2 = EI/(GA L^2), Huang's (1961) characteristic equations are
@@ -12,10 +12,11 @@ With b^2 = rho A w^2 L^4/EI, r^2 = rho I/(rho A L^2), s^2 = EI/(GA L^2), Huang's
   free-free:    2 - 2 ch c + b/sqrt(1-b^2r^2s^2) (b^2 r^2 (r^2-s^2)^2 + 3r^2 - s^2) sh s = 0
 Pinned-pinned: (EI k^2 + GA - rho I w^2)(GA k^2 - rho A w^2) = GA^2 k^2, k = n pi/L.
 
-Accuracy: `single` with 30 digits by Huang's equations, and again as the determinant of the transfer matrix exp(B L);
-`tip` and `frame` by the 12x12 transfer matrix of the rods and by Ritz polynomials of two degrees (upper bounds);
-`ring` by 3x3 Fourier matrices, and as roots of det(transfer matrix over half a wave + 1) with 100 digits.
-Needs numpy, scipy, mpmath; half a minute.
+Accuracy, relative: straight rods and rings all digits of double precision, tip body 1e-12, frame 1e-10. Straight rods have
+30 digits by Huang's equations, and again as the determinant of the transfer matrix exp(B L), and tend to
+Euler-Bernoulli's as r and s vanish; tip body and frame come from the 12x12 transfer matrix of the rods, and from Ritz
+polynomials of two degrees (upper bounds); the ring from 3x3 Fourier matrices, and as roots of det(transfer matrix over
+half a wave + 1) with 100 digits. The script fails if any two differ by more.
 """
 
 import mpmath as mp
@@ -23,11 +24,28 @@ import numpy as np
 from scipy.linalg import eigh, expm
 from scipy.optimize import brentq
 
+from datapackage import Field, Table, root
+
 mp.mp.dps = 30
 
 
-def row(values, digits=14):
-    return "[" + ", ".join(mp.nstr(mp.mpf(v), digits, min_fixed=-9, max_fixed=9) for v in values) + "]"
+OMEGA = "angular frequency"
+
+
+def store(name, title, keys, rows, accuracy, method, tolerance):
+    columns = [*keys, Field("omega", "rad/s", OMEGA, relative_tolerance=tolerance)]
+    Table(
+        source="continuous", name=name, title=title, fields=columns, rows=rows, accuracy=accuracy, accuracy_method=method,
+        parameters={"digits": mp.mp.dps}, tools=["mpmath", "numpy", "scipy"],
+    ).write(root())
+
+
+def number(description):
+    return Field("mode", "1", description)
+
+
+def word(name, description):
+    return Field(name, "", description, type="string")
 
 
 # ---------------------------------------------------------------- single rods
@@ -66,54 +84,55 @@ def determinant(kind, ei, ga, ra, ri, length):
         # state (w, p, q, m): w' = p + q/GA, p' = m/EI, q' = -ra w^2 w, m' = -q - ri w^2 p
         b = mp.matrix([[0, 1, 1 / ga, 0], [0, 0, 0, 1 / ei], [-ra * w * w, 0, 0, 0], [0, -ri * w * w, -1, 0]])
         t = mp.expm(b * length)
-        rows, (c, d) = {"cantilever": ((2, 3), (2, 3)), "free-free": ((2, 3), (0, 1)), "pinned": ((0, 3), (1, 2))}[kind]
+        rows, (c, d) = {"cantilever": ((2, 3), (2, 3)), "free": ((2, 3), (0, 1)), "pinned": ((0, 3), (1, 2))}[kind]
         return t[rows[0], c] * t[rows[1], d] - t[rows[0], d] * t[rows[1], c]
     return f
 
 
-def single():
-    for name, length, young, nu, rho, section in (
-            ("slender: circle d 0.01, L 1, E 2e11, nu 0.3, rho 7800", 1, 2e11, "0.3", 7800, ("0.01",)),
-            ("stocky: rectangle width 0.1 (e_y), height 0.2 (e_z), L 1, E 2e11, nu 0.3, rho 7800", 1, 2e11, "0.3", 7800, ("0.1", "0.2"))):
-        young, nu, rho = mp.mpf(young), mp.mpf(nu), mp.mpf(rho)
-        shear = young / (2 * (1 + nu))
-        if len(section) == 1:
-            d = mp.mpf(section[0])
-            area = mp.pi * d ** 2 / 4
-            second = {"": mp.pi * d ** 4 / 64}
-        else:
-            w, h = map(mp.mpf, section)
-            area = w * h
-            second = {" about e_y (I = w h^3/12)": w * h ** 3 / 12, " about e_z (I = h w^3/12)": h * w ** 3 / 12}
-        print("\n==", name, " [rad/s]")
-        for axis, inertia in second.items():
-            data = young * inertia, shear * area, rho * area, rho * inertia, mp.mpf(length)
-            euler = mp.sqrt(data[0] / data[2]) / length ** 2
-            for kind, beta in (("cantilever", (1.87510407, 4.69409113, 7.85475744)), ("free-free", (4.73004074, 7.85320462, 10.99560784))):
-                f = huang(kind, *data)
-                start = euler * beta[0] ** 2 * mp.mpf("0.4")
-                found = roots(f, start, euler * mp.mpf("0.9"), 4)
-                g = determinant(kind, *data)
-                tiny = mp.mpf("1e-18")
-                same = all(mp.sign(g(v * (1 - tiny))) != mp.sign(g(v * (1 + tiny))) for v in found)
-                print(f"bending{axis}, {kind}", row(found), " transfer matrix within 1e-18:", same,
-                      " ratio to Euler-Bernoulli", row([v / (euler * b * b) for v, b in zip(found, beta)], 6))
-            pinned = []
-            for n in range(1, 5):
-                k, (ei, ga, ra, ri, _) = n * mp.pi / length, data
-                a, b, c = ra * ri, -(ra * (ei * k * k + ga) + ri * ga * k * k), ei * ga * k ** 4
-                pinned.append(mp.sqrt((-b - mp.sqrt(b * b - 4 * a * c)) / (2 * a)))
-            g = determinant("pinned", *data)
-            same = all(mp.sign(g(v * (1 - tiny))) != mp.sign(g(v * (1 + tiny))) for v in pinned)
-            print(f"bending{axis}, pinned-pinned", row(pinned), " transfer matrix within 1e-18:", same)
-        wave = {"axial": mp.sqrt(young / rho), "torsional (torsion constant I_y + I_z: speed sqrt(G/rho))": mp.sqrt(shear / rho)}
-        for what, c in wave.items():
-            print(what, "cantilever", row([(2 * n - 1) * mp.pi * c / (2 * length) for n in (1, 2, 3)]),
-                  "free-free", row([n * mp.pi * c / length for n in (1, 2, 3)]))
-    # the Euler-Bernoulli limit: r = s -> 0
-    for kind, beta in (("cantilever", ("1.87510406871196", "4.69409113297418", "7.85475743823761")), ("free-free", ("4.73004074486270", "7.85320462409584"))):
-        f = huang(kind, mp.mpf(1), mp.mpf(10) ** 16, mp.mpf(1), mp.mpf(10) ** -16, mp.mpf(1))
-        print("Euler-Bernoulli limit,", kind, row([mp.sqrt(v) for v in roots(f, 1.5, 1.1, len(beta))]), "expected", beta)
+STEEL = mp.mpf("2e11"), mp.mpf("0.3"), mp.mpf(7800)
+# Zeros of cosh cos + 1 and of cosh cos - 1: the rod of Euler and Bernoulli.
+BETA = {"cantilever": ("1.87510406871196", "4.69409113297418"), "free": ("4.73004074486270", "7.85320462409584")}
+
+
+def bending(support, *data):
+    """The four lowest, and whether the transfer matrix has its roots within 1e-18 of them."""
+    ei, ga, ra, ri, length = data
+    if support == "pinned":
+        found = []
+        for n in range(1, 5):
+            k = n * mp.pi / length
+            a, b, c = ra * ri, -(ra * (ei * k * k + ga) + ri * ga * k * k), ei * ga * k ** 4
+            found.append(mp.sqrt((-b - mp.sqrt(b * b - 4 * a * c)) / (2 * a)))
+    else:
+        euler = mp.sqrt(ei / ra) / length ** 2
+        found = roots(huang(support, *data), euler * mp.mpf(BETA[support][0]) ** 2 * mp.mpf("0.4"), euler * mp.mpf("0.9"), 4)
+    g, tiny = determinant(support, *data), mp.mpf("1e-18")
+    return found, all(mp.sign(g(v * (1 - tiny))) != mp.sign(g(v * (1 + tiny))) for v in found)
+
+
+def straight():
+    young, nu, rho = STEEL
+    shear, d, w, h = young / (2 * (1 + nu)), mp.mpf("0.01"), mp.mpf("0.1"), mp.mpf("0.2")
+    sections = [("slender", "any", mp.pi * d ** 2 / 4, mp.pi * d ** 4 / 64), ("stocky", "e_y", w * h, w * h ** 3 / 12),
+                ("stocky", "e_z", w * h, h * w ** 3 / 12)]
+    rows = []
+    for rod, axis, area, second in sections:
+        for support in ("cantilever", "free", "pinned"):
+            found, same = bending(support, young * second, shear * area, rho * area, rho * second, mp.mpf(1))
+            print(rod, axis, support, "transfer matrix within 1e-18:", same)
+            assert same
+            rows += [[rod, support, axis, n + 1, float(v)] for n, v in enumerate(found)]
+    for support, beta in BETA.items():  # the limit r = s -> 0
+        f = huang(support, mp.mpf(1), mp.mpf(10) ** 16, mp.mpf(1), mp.mpf(10) ** -16, mp.mpf(1))
+        found = [mp.sqrt(v) for v in roots(f, 1.5, 1.1, 2)]
+        assert all(abs(v - mp.mpf(b)) < 1e-13 for v, b in zip(found, beta))
+    store("straight_rod_frequencies", "Bending vibrations of straight steel rods with shear and rotary inertia",
+          [word("rod", "slender: circle of diameter 0.01 m; stocky: 0.1 m along e_y, 0.2 m along e_z; both: length 1 m, "
+                       "E 2e11 Pa, nu 0.3, rho 7800 kg/m3"),
+           word("support", "cantilever, free at both ends, pinned at both ends"), word("axis", "that it bends about"),
+           number("without rigid motions, from 1 on")],
+          rows, "all digits of double precision",
+          "Huang's characteristic equations with 30 digits against transfer matrices; Euler-Bernoulli's limit", 1e-15)
 
 
 # ---------------------------------------------------------------- rods in space: Ritz and transfer matrices
@@ -199,12 +218,17 @@ def shooting(rods, estimates, body=None):
     return np.array(out)
 
 
-def report(title, rods, count, degrees, body=None):
-    print("\n==", title, "[rad/s]")
-    a, b = (ritz(rods, d, body)[:count] for d in degrees)
-    c = shooting(rods, b, body)
-    print(row(c, 13))
-    print("Ritz, degrees", degrees, "differ by", np.abs(a / b - 1).max(), "; transfer matrix from Ritz", np.abs(c / b - 1).max())
+def in_space(title, rods, count, degrees, stated, body=None):
+    """By transfer matrices, from where Ritz finds them."""
+    a, b = (ritz(rods, degree, body)[:count] for degree in degrees)
+    found = shooting(rods, b, body)
+    errors = np.abs(a / b - 1).max(), np.abs(found / b - 1).max()
+    print(title, "Ritz, degrees", degrees, "differ by", errors[0], "; transfer matrix from Ritz", errors[1])
+    assert max(errors) < stated
+    return found.tolist()
+
+
+JUDGED = "transfer matrices against Ritz polynomials of two degrees; closed forms of axial and torsional vibrations"
 
 
 def tip():
@@ -213,42 +237,52 @@ def tip():
     area, iy, iz = w * h, w * h ** 3 / 12, h * w ** 3 / 12
     rod = Rod(np.eye(3), 1.0, [young * area, shear * area, shear * area], [shear * (iy + iz), young * iy, young * iz], rho * area,
               rho * np.array([iy + iz, iy, iz]))
-    body = 50.0, np.diag([1.0, 2.0, 3.0]), np.array([0.15, 0, 0])
-    report("stocky rod along +x with a body at its end: mass 50, inertia (1, 2, 3), centre of mass at x = 1.15", [rod], 8, (14, 18), body)
-    body = 50.0, np.diag([1.0, 2.0, 3.0]), np.array([0.15, 0.1, -0.2])
-    report("the same, centre of mass at (1.15, 0.1, -0.2): all directions coupled", [rod], 8, (14, 18), body)
-    wave = np.sqrt(young / rho)
-    k = [brentq(lambda k: k * np.tan(k) - rho * area / 50, *v, xtol=1e-15) for v in ((0.1, 1.57), (3.15, 4.71))]
-    print("closed form, axial, first body (k tan k = rho A L/m):", row([v * wave for v in k]))
-    c = np.sqrt(shear / rho)
-    k = [brentq(lambda k: k * np.tan(k) - rho * (iy + iz) / 1.0, *v, xtol=1e-15) for v in ((0.1, 1.57), (3.15, 4.71))]
-    print("closed form, torsional, first body (k tan k = rho J L/I_xx):", row([v * c for v in k]))
+    rows = []
+    for where, offset in (("in line", [0.15, 0, 0]), ("aside", [0.15, 0.1, -0.2])):
+        found = in_space(f"tip body {where}:", [rod], 8, (14, 18), 1e-12, (50.0, np.diag([1.0, 2.0, 3.0]), np.array(offset)))
+        if where == "in line":
+            for wave, ratio in ((np.sqrt(young / rho), rho * area / 50), (np.sqrt(shear / rho), rho * (iy + iz) / 1.0)):
+                # k tan k = mass of the rod over that of the body
+                first = wave * brentq(lambda k: k * np.tan(k) - ratio, 0.1, 1.57, xtol=1e-15)
+                assert min(abs(v / first - 1) for v in found) < 1e-12
+        rows += [[where, n + 1, v] for n, v in enumerate(found)]
+    store("tip_body_frequencies", "Stocky steel cantilever with a rigid body at its end",
+          [word("body", "mass 50 kg, inertia (1, 2, 3) kg m2, centre of mass at (1.15, 0, 0) m (in line) or "
+                        "(1.15, 0.1, -0.2) m (aside)"),
+           number("from the lowest on")], rows, "1e-12, relative", JUDGED, 3e-13)
 
 
 def frame():
     data = 10.0, [1e6] * 3, [1e3] * 3, 1.0, [20.0, 10, 10]
     first = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])  # e_x = +y, e_y = -x (default e_z cross tangent)
-    report("right-angle frame (Simo & Vu-Quoc 1988), clamped at (0, 0, 0), elbow (0, 10, 0), tip (10, 10, 0)",
-           [Rod(first, *data), Rod(np.eye(3), *data)], 10, (16, 20))
+    found = in_space("frame:", [Rod(first, *data), Rod(np.eye(3), *data)], 10, (16, 20), 1e-10)
+    store("frame_frequencies", "Right-angle frame of Simo & Vu-Quoc (1988), clamped at one end: legs of length 10 along y and x",
+          [number("from the lowest on")], [[n + 1, v] for n, v in enumerate(found)], "1e-10, relative", JUDGED, 3e-11)
 
 
 # ---------------------------------------------------------------- ring
 
 def ring():
-    for name, radius, ea, ga, gj, eiy, eiz, ra, ri in (
-            ("thin: R 1, circle d 0.01, E 2e11, nu 0.3, rho 7800", 1.0, *circle(0.01)),
-            ("thick: R 1, circle d 0.2", 1.0, *circle(0.2))):
-        print("\n== closed ring,", name, "[rad/s]")
-        for n in (0, 1, 2, 3, 4):
+    rows, radius = [], 1.0
+    for name, diameter in (("thin", 0.01), ("thick", 0.2)):
+        ea, ga, gj, eiy, eiz, ra, ri = data = circle(diameter)
+        for n in range(6):
             q, one = mp.mpf(n) / radius, 1 / mp.mpf(radius)
             plane = fourier([[q, -one, 0], [one, -q, -1], [0, 0, q]], (ea, ga, eiz), (ra, ra, ri[2]))  # (v_x sin, v_y cos, phi_z sin)
             out = fourier([[-q, 1, 0], [0, -one, -q], [0, q, one]], (ga, gj, eiy), (ra, ri[1], ri[0]))  # (v_z cos, phi_y sin, phi_x cos)
             if n == 0:  # the sine fields vanish
                 plane, out = [mp.sqrt(ea / (mp.mpf(ra) * radius ** 2))], [mp.sqrt(eiy / (mp.mpf(ri[0]) * radius ** 2))]
-            for what, w in (("in plane", plane), ("out of plane", out)):
-                euler = np.sqrt(eiz / (ra * radius ** 4) * n ** 2 * (n * n - 1) ** 2 / (n * n + 1)) if n > 1 and what == "in plane" else 0
-                print(f"n = {n} {what}", row(w), f"Euler-Bernoulli, inextensible {euler:.12g} ratio {float(w[0] / euler):.8f}" if euler else "",
-                      "transfer matrix, relative:", mp.nstr(around(w[0], n, radius, ea, ga, gj, eiy, eiz, ra, ri), 1))
+            for what, found in (("in", plane), ("out", out)):
+                off = around(found[0], n, radius, *data)
+                print(f"{name} ring, n = {n}, {what} of plane; transfer matrix, relative:", mp.nstr(off, 1))
+                assert off < 1e-14
+                rows += [[name, what, n, branch + 1, float(w)] for branch, w in enumerate(found)]
+    store("ring_frequencies", "Closed steel ring of radius 1 m, circular section",
+          [word("ring", "diameter 0.01 m (thin) or 0.2 m (thick)"), word("plane", "in the ring's plane, or out of it"),
+           Field("n", "1", "waves around; each n > 0 has two modes, sine and cosine, n = 0 one"),
+           Field("branch", "1", "from the lowest on")],
+          rows, "all digits of double precision",
+          "3x3 Fourier matrices with 30 digits; roots of the transfer matrix with 100 digits", 1e-13)
 
 
 def fourier(strain, stiffness, mass):
@@ -284,7 +318,7 @@ def around(w, n, radius, ea, ga, gj, eiy, eiz, ra, ri):
 
 
 if __name__ == "__main__":
-    single()
+    straight()
     tip()
     frame()
     ring()
