@@ -32,6 +32,7 @@ mod moving_start;
 mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
+mod pinocchio;
 mod princeton;
 mod probes;
 mod radau;
@@ -98,6 +99,7 @@ pub fn all() -> Vec<Case> {
         moving_start::all(),
         path_independence::all(),
         petrov_galerkin::all(),
+        pinocchio::all(),
         princeton::all(),
         probes::all(),
         radau::all(),
