@@ -8,8 +8,10 @@ mod continuous;
 mod convergence_orders;
 mod cut_rods;
 mod derivatives;
+mod exudyn_beams;
 mod exudyn_bodies;
 mod exudyn_chains;
+mod exudyn_wilberforce;
 mod flexible_pendulum;
 mod four_bar;
 mod free_bodies;
@@ -77,6 +79,8 @@ pub fn all() -> Vec<Case> {
         derivatives::all(),
         exudyn_bodies::all(),
         exudyn_chains::all(),
+        exudyn_beams::all(),
+        exudyn_wilberforce::all(),
         flexible_pendulum::all(),
         four_bar::all(),
         free_bodies::all(),
