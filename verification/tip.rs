@@ -8,13 +8,14 @@ use nalgebra::Vector3;
 use crate::case::{Checks, Kind, Outcome};
 use crate::measure::{position, solve};
 use crate::placement::{Placement, placements};
+use crate::references::Row;
 
 /// Where the tip should be, and how well that is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact {
     /// Position of probe 0 at the end of the path.
     pub tip: [f64; 3],
-    /// What the digits of the reference leave open, as a distance.
+    /// What the accuracy of the reference leaves open, as a distance.
     pub digits: f64,
     /// Length of the rod.
     pub length: f64,
@@ -22,13 +23,21 @@ pub struct Exact {
     pub allowance: f64,
 }
 
-/// Half a unit of the last printed digit in each of three components.
-pub fn half_digit(unit: f64) -> f64 {
-    0.5 * unit * 3.0_f64.sqrt()
+impl Exact {
+    /// From a row of a reference file, `x y z` and `position_accuracy`, the error of each of them.
+    pub fn of(row: &Row, length: f64, allowance: f64) -> Result<Self, Box<dyn Error>> {
+        let digits = row.number("position_accuracy")? * 3.0_f64.sqrt();
+        Ok(Self { tip: row.numbers("x y z")?, digits, length, allowance })
+    }
+
+    /// The same, where the row has the tip's displacement from here.
+    pub fn displaced(self, from: [f64; 3]) -> Self {
+        Self { tip: std::array::from_fn(|k| from[k] + self.tip[k]), ..self }
+    }
 }
 
 const REASON: &str =
-    "what the reference's digits leave open, and the allowance that halving the mesh has to keep, too";
+    "what the reference's accuracy leaves open, and the allowance that halving the mesh has to keep, too";
 const HALVED: &str = "half as many elements have 4 times the mesh error or more, and a Newton path and a rounding of \
                       their own: what they do not change is converged";
 

@@ -242,6 +242,18 @@ fn missing_files_and_folders_that_cannot_be_made_end_with_4() {
     assert!(ended.stderr.contains("absent.toml"), "{}", ended.stderr);
 }
 
+/// The results hold the scene with its defaults under that name.
+#[test]
+fn results_never_replace_the_scene_that_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write_scene(&folder, GOOD);
+    let ended = cosserat(&["run", text(&path), "--out", text(folder.path())]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.starts_with("error: "), "{}", ended.stderr);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), GOOD);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
 #[test]
 fn a_wrong_scene_leaves_no_results() {
     let folder = tempfile::tempdir().unwrap();

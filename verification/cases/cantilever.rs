@@ -2,44 +2,52 @@
 //!
 //! L = 2π, EA = 5, GA = 1, EI = 2: strains are so large that a wrong γ shows in the second digit.
 
+use std::error::Error;
 use std::f64::consts::TAU;
 
 use cosserat::scene::{LoadKind, Rod, Scene, Section, Statics};
 
+use super::static_rods::load_path;
 use crate::case::{Case, Checks, Outcome};
 use crate::measure::{clamp, load, probe};
 use crate::pieces::line;
-use crate::tip::{Exact, check_tip, half_digit};
+use crate::tip::{Exact, check_tip};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new(
-        "cantilever::values",
-        "the continuous equations (elliptic integrals with stretch and shear), see continuous::published_tips",
-        values,
-    )]
+    const SOURCE: &str = "the continuous equations, scripts/references/static_rods.py";
+    vec![
+        Case::new("cantilever::values", SOURCE, values).reads(&[TIPS]),
+        Case::new("cantilever::constrained_theories", SOURCE, constrained_theories).reads(&[TIPS]),
+    ]
 }
 
 pub const LENGTH: f64 = TAU;
 pub const BENDING: f64 = 2.0;
 
-/// α², and (x, deflection)/L of the tip.
-pub const TIPS: [(f64, [f64; 2]); 3] = [
-    (10.0 / 9.0, [0.921_189_562_7, 0.374_765_827_1]),
-    (5.0, [0.574_675_308_5, 0.829_423_259_9]),
-    (10.0, [0.394_214_876_9, 1.009_158_306_0]),
-];
+/// The tips.
+pub const TIPS: &str = "continuous/static_cantilever.csv";
+
+/// α² in the file's words and as a number, and the tip, under the whole load.
+pub fn tips(checks: &mut Checks) -> Result<[(&'static str, f64, Exact); 3], Box<dyn Error>> {
+    let table = checks.reference(TIPS)?;
+    let exact = |words| {
+        let row = table.row(&[("theory", "cosserat"), ("alpha_squared", words), ("factor", "1.0")])?;
+        Exact::of(&row, LENGTH, 1e-10)
+    };
+    Ok([("10/9", 10.0 / 9.0, exact("10/9")?), ("5", 5.0, exact("5")?), ("10", 10.0, exact("10")?)])
+}
 
 /// The tip force.
 pub fn force(alpha_squared: f64) -> f64 {
     alpha_squared * BENDING / LENGTH.powi(2)
 }
 
-fn scene(alpha_squared: f64, elements: usize) -> Scene {
+fn scene(alpha_squared: f64, elements: usize, [axial, shear]: [f64; 2]) -> Scene {
     let section = Section::Custom {
-        axial: 5.0,
-        shear_y: 1.0,
-        shear_z: 1.0,
+        axial,
+        shear_y: shear,
+        shear_z: shear,
         torsion: 1.0,
         bending_y: BENDING,
         bending_z: BENDING,
@@ -56,16 +64,35 @@ fn scene(alpha_squared: f64, elements: usize) -> Scene {
     }
 }
 
+const STIFFNESS: [f64; 2] = [5.0, 1.0];
+
 fn values(checks: &mut Checks) -> Outcome {
-    for (alpha_squared, [x, y]) in TIPS {
-        let exact = Exact {
-            tip: [LENGTH * x, LENGTH * y, 0.0],
-            digits: half_digit(1e-10) * LENGTH,
-            length: LENGTH,
-            allowance: 1e-10,
-        };
-        let name = format!("α² = {alpha_squared:.3}");
-        check_tip(checks, &name, &|elements| scene(alpha_squared, elements), 32, &exact)?;
+    for (words, alpha_squared, exact) in tips(checks)? {
+        let name = format!("α² = {words}");
+        check_tip(checks, &name, &|elements| scene(alpha_squared, elements, STIFFNESS), 32, &exact)?;
+        let table = checks.reference(TIPS)?;
+        let rows = table.select(&[("theory", "cosserat"), ("alpha_squared", words)])?;
+        let title = format!("shear-soft cantilever, {name}");
+        load_path(checks, &title, &scene(alpha_squared, 32, STIFFNESS), 1.0, rows, "factor")?;
+    }
+    Ok(())
+}
+
+/// Stiff instead of rigid: what is ruled out in the reference is P/S here, and the tip is off by less than twice L P/S.
+fn constrained_theories(checks: &mut Checks) -> Outcome {
+    const STIFF: f64 = 1e8;
+    let table = checks.reference(TIPS)?;
+    for (theory, words, alpha_squared, stiffness) in [
+        ("shear-rigid", "10", 10.0, [5.0, STIFF]),
+        ("inextensible", "10/3", 10.0 / 3.0, [STIFF; 2]),
+        ("inextensible", "10", 10.0, [STIFF; 2]),
+    ] {
+        let row = table.row(&[("theory", theory), ("alpha_squared", words), ("factor", "1.0")])?;
+        let rigid = Exact::of(&row, LENGTH, 1e-9)?;
+        let strain = force(alpha_squared) / STIFF;
+        let exact = Exact { digits: rigid.digits + 2.0 * LENGTH * strain, ..rigid };
+        let name = format!("{theory}, α² = {words}");
+        check_tip(checks, &name, &|elements| scene(alpha_squared, elements, stiffness), 32, &exact)?;
     }
     Ok(())
 }

@@ -1,22 +1,32 @@
-//! The reference without finite elements is itself held against the values that were computed elsewhere.
+//! The reference without finite elements is itself held against another that a script made in Python.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::case::{Case, Checks, Kind, Outcome};
-use crate::cases::{bend_45, cantilever, convergence_orders, princeton};
+use crate::cases::{bend_45, cantilever, convergence_orders, princeton, spring};
 use crate::continuous::{Cantilever, Station};
 use crate::placement::placements;
-use crate::tip::half_digit;
+use crate::tip::Exact;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new(
-        "continuous::published_tips",
-        "tips of other implementations of the continuous equations, each repeated there at a second resolution",
-        published_tips,
-    )]
+    vec![
+        Case::new(
+            "continuous::other_tips",
+            "the same equations by collocation and by multiple shooting, scripts/references/static_rods.py",
+            other_tips,
+        )
+        .reads(&[
+            cantilever::TIPS,
+            bend_45::LOADS,
+            bend_45::SLENDERNESS,
+            princeton::TIPS,
+            spring::WIRE_END,
+            convergence_orders::TIPS,
+        ]),
+    ]
 }
 
 /// A square section of width w with torsion constant J.
@@ -26,7 +36,7 @@ fn square(young: f64, shear: f64, width: f64, torsion_constant: Option<f64>) -> 
     ([young * area, shear * area, shear * area], [torsion, young * second, young * second])
 }
 
-fn check(checks: &mut Checks, name: String, rod: &Cantilever, tip: [f64; 3], digits: f64) -> Outcome {
+fn check(checks: &mut Checks, name: String, rod: &Cantilever, exact: &Exact) -> Outcome {
     const ACCURACY: f64 = 1e-10;
     const RESOLVED: &str = "required of a reference; the order is 6: the finer resolution is 64 times better than the \
                             change";
@@ -50,24 +60,24 @@ fn check(checks: &mut Checks, name: String, rod: &Cantilever, tip: [f64; 3], dig
         checks.vector(
             Kind::ClosedForm,
             name,
-            (placement.undo_position(last.position).into(), tip),
-            digits + ACCURACY * rod.length,
-            "half a unit of the last printed digit in each component, and the accuracy of the integration",
+            (placement.undo_position(last.position).into(), exact.tip),
+            exact.digits + ACCURACY * rod.length,
+            "the accuracy of both",
         );
     }
     Ok(())
 }
 
-fn published_tips(checks: &mut Checks) -> Outcome {
+fn other_tips(checks: &mut Checks) -> Outcome {
     roll_up(checks)?;
     cantilever_tips(checks)?;
     bend_tips(checks)?;
     princeton_tips(checks)?;
     spring_tips(checks)?;
-    for (slenderness, tip) in convergence_orders::TIPS {
+    for (slenderness, exact) in convergence_orders::tips(checks)? {
         let rod = convergence_orders::continuous(slenderness);
         let name = format!("convergence problem, slenderness {slenderness:.0e}");
-        check(checks, name, &rod, tip, half_digit(1e-11))?;
+        check(checks, name, &rod, &exact)?;
     }
     Ok(())
 }
@@ -83,12 +93,13 @@ fn roll_up(checks: &mut Checks) -> Outcome {
         body_moment: [0.0, 0.0, FRAC_PI_2],
     };
     let tip = [1.0 / FRAC_PI_2, 1.0 / FRAC_PI_2, 0.0];
-    check(checks, "quarter circle".into(), &rod, tip, 0.0)
+    let exact = Exact { tip, digits: 0.0, length: 1.0, allowance: 0.0 };
+    check(checks, "quarter circle".into(), &rod, &exact)
 }
 
 fn cantilever_tips(checks: &mut Checks) -> Outcome {
     let length = cantilever::LENGTH;
-    for (alpha_squared, [x, y]) in cantilever::TIPS {
+    for (words, alpha_squared, exact) in cantilever::tips(checks)? {
         let rod = Cantilever {
             length,
             force_stiffness: [5.0, 1.0, 1.0],
@@ -98,14 +109,15 @@ fn cantilever_tips(checks: &mut Checks) -> Outcome {
             force: [0.0, cantilever::force(alpha_squared), 0.0],
             body_moment: [0.0; 3],
         };
-        let name = format!("cantilever, α² = {alpha_squared:.3}");
-        check(checks, name, &rod, [length * x, length * y, 0.0], half_digit(1e-10) * length)?;
+        check(checks, format!("cantilever, α² = {words}"), &rod, &exact)?;
     }
     Ok(())
 }
 
 fn bend_tips(checks: &mut Checks) -> Outcome {
-    for row in bend_45::LOADS.iter().chain(&bend_45::SLENDERNESS) {
+    let mut rows = bend_45::loads(checks)?;
+    rows.extend(bend_45::ladder(checks)?);
+    for row in rows {
         let young = bend_45::YOUNG;
         let (force_stiffness, moment_stiffness) = square(young, 0.5 * young, row.width, row.torsion_constant);
         let rod = Cantilever {
@@ -118,16 +130,16 @@ fn bend_tips(checks: &mut Checks) -> Outcome {
             body_moment: [0.0; 3],
         };
         let name = format!("45° bend, F = {:e}, J {:?}", row.force, row.torsion_constant);
-        check(checks, name, &rod, bend_45::mirrored(row.tip), half_digit(1e-8))?;
+        check(checks, name, &rod, &row.exact)?;
     }
     Ok(())
 }
 
 fn princeton_tips(checks: &mut Checks) -> Outcome {
-    use princeton::{HEIGHT, LENGTH, POISSON, TIPS, WIDTH, YOUNG, force, torsion_constant};
+    use princeton::{HEIGHT, LENGTH, POISSON, WIDTH, YOUNG, force, tips, torsion_constant};
     let shear = YOUNG / (2.0 * (1.0 + POISSON));
     let area = WIDTH * HEIGHT;
-    for (degrees, [x, y, z]) in TIPS {
+    for (degrees, exact) in tips(checks)? {
         let rod = Cantilever {
             length: LENGTH,
             force_stiffness: [YOUNG * area, shear * area, shear * area],
@@ -142,7 +154,7 @@ fn princeton_tips(checks: &mut Checks) -> Outcome {
             body_moment: [0.0; 3],
         };
         let name = format!("Princeton beam, β = {degrees}°");
-        check(checks, name, &rod, [LENGTH + x, y, z], half_digit(1e-11))?;
+        check(checks, name, &rod, &exact)?;
     }
     Ok(())
 }
@@ -161,15 +173,16 @@ fn spring_tips(checks: &mut Checks) -> Outcome {
         Vector3::y(),
         Vector3::new(-slope, 0.0, 1.0) / stretch,
     ]);
+    let length = TAU * coils * radius * stretch;
     let end = start + Vector3::z() * (TAU * coils * slope * radius);
     // More load than that asks for multiple shooting: the clamp moment's effect on the tip grows exponentially.
-    let rows = [
-        (1e-3, [1.475_001_80e-6, 3.520_367_47e-5, 2.947_813_47e-5], 1e-13),
-        (1.0, [5.062_200_70e-4, 8.953_439_68e-3, 1.850_112_927_0e-2], 1e-11),
-    ];
-    for (force, displacement, unit) in rows {
+    for row in checks.reference(spring::WIRE_END)?.rows() {
+        let force = row.number("force")?;
+        if force > 1.0 {
+            continue;
+        }
         let rod = Cantilever {
-            length: TAU * coils * radius * stretch,
+            length,
             force_stiffness: [YOUNG * area, SHEAR * area, SHEAR * area],
             moment_stiffness: [2.0 * SHEAR * second, YOUNG * second, YOUNG * second],
             reference_curvature: [
@@ -181,8 +194,8 @@ fn spring_tips(checks: &mut Checks) -> Outcome {
             force: [0.0, 0.0, force],
             body_moment: [0.0; 3],
         };
-        let tip = end + Vector3::from(displacement);
-        check(checks, format!("helical spring, {force} N"), &rod, tip.into(), half_digit(unit))?;
+        let exact = Exact::of(&row, length, 0.0)?.displaced(end.into());
+        check(checks, format!("helical spring, {force} N"), &rod, &exact)?;
     }
     Ok(())
 }

@@ -6,17 +6,20 @@ use std::f64::consts::TAU;
 use cosserat::scene::{Basis, InterpolationKind, LoadKind, NodeSpacing, QuadratureKind, Rod, Scene, Statics};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use super::static_rods::load_path;
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::continuous::{Cantilever, Shape, Station, angle};
 use crate::measure::{clamp, load, probe, solve};
 use crate::pieces::{line, rectangle, young_shear};
 use crate::placement::{Placement, placements};
+use crate::tip::{Exact, check_tip};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     const SOURCE: &str =
         "Harsch, Sailer & Eugster 2023, section 5.1; errors against the continuous equations";
     vec![
+        Case::new("convergence_orders::tip", SOURCE, tip).reads(&[TIPS]),
         Case::new("convergence_orders::r12", SOURCE, r12),
         Case::new("convergence_orders::r12_values", SOURCE, r12_values),
         Case::new("convergence_orders::se3", SOURCE, se3),
@@ -30,11 +33,20 @@ const SHEAR: f64 = 0.5;
 /// Points of the root mean square, evenly from ξ = 0 to ξ = 1.
 const POINTS: usize = 100;
 
-/// Slenderness and exact tip.
-pub const TIPS: [(f64, [f64; 3]); 2] = [
-    (1e2, [640.163254219361, 539.205277433524, 354.79132278973]),
-    (1e4, [640.165865857196, 539.207351681614, 354.768471425281]),
-];
+/// The tips.
+pub const TIPS: &str = "continuous/static_quarter_turn.csv";
+/// In the file's words and as a number.
+const SLENDERNESS: [(&str, f64); 2] = [("100.0", 1e2), ("10000.0", 1e4)];
+
+/// Slenderness and tip.
+pub fn tips(checks: &mut Checks) -> Result<Vec<(f64, Exact)>, Box<dyn Error>> {
+    let table = checks.reference(TIPS)?;
+    let exact = |(words, slenderness)| {
+        let row = table.row(&[("slenderness", words), ("factor", "1.0")])?;
+        Ok((slenderness, Exact::of(&row, LENGTH, 1e-10)?))
+    };
+    SLENDERNESS.into_iter().map(exact).collect()
+}
 
 /// The problem without finite elements.
 pub fn continuous(slenderness: f64) -> Cantilever {
@@ -172,8 +184,30 @@ fn caps(degree: usize) -> ([f64; 2], &'static str) {
     }
 }
 
+/// The tip, and on its way.
+fn tip(checks: &mut Checks) -> Outcome {
+    for (slenderness, exact) in tips(checks)? {
+        let name = format!("slenderness {slenderness:.0e}");
+        check_tip(checks, &name, &|elements| with_tip(slenderness, elements), 24, &exact)?;
+    }
+    let table = checks.reference(TIPS)?;
+    for (words, slenderness) in SLENDERNESS {
+        let rows = table.select(&[("slenderness", words)])?;
+        let title = format!("body end moment and dead tip force, slenderness {slenderness:.0e}");
+        load_path(checks, &title, &with_tip(slenderness, 24), 1.0, rows, "factor")?;
+    }
+    Ok(())
+}
+
+/// Elements of degree 4, probe 0 at the tip.
+fn with_tip(slenderness: f64, elements: usize) -> Scene {
+    let mut scene = scene(&Mesh::r12(slenderness, 4, elements));
+    scene.probe = vec![probe("tip", "rod@1")];
+    scene
+}
+
 fn r12(checks: &mut Checks) -> Outcome {
-    for (slenderness, _) in TIPS {
+    for (_, slenderness) in SLENDERNESS {
         let exact = continuous(slenderness).solve(POINTS - 1)?;
         for (degree, node_spacing) in [
             (1, NodeSpacing::GaussLobatto),
@@ -237,7 +271,7 @@ fn r12_values(checks: &mut Checks) -> Outcome {
 fn se3(checks: &mut Checks) -> Outcome {
     let meshes = [4, 8, 16, 32];
     let table = [(3.1193, 1e-4), (0.77498, 1e-5), (0.19345, 1e-5), (0.048342, 1e-6)];
-    for (slenderness, _) in TIPS {
+    for (_, slenderness) in SLENDERNESS {
         let exact = continuous(slenderness).solve(POINTS - 1)?;
         let mesh = Mesh { interpolation: InterpolationKind::Se3, ..Mesh::r12(slenderness, 1, 1) };
         for placement in placements(LENGTH) {

@@ -144,6 +144,8 @@ fn spring(checks: &mut Checks) -> Outcome {
 
 /// Where the end is: position, and quaternion of the section.
 type Pose = ([f64; 3], [f64; 4]);
+/// Load factor, pose, estimated errors of position and rotation.
+type Stored = (f64, Pose, [f64; 2]);
 
 /// How far two poses are apart [m, rad].
 fn apart(a: &Pose, b: &Pose) -> [f64; 2] {
@@ -152,7 +154,7 @@ fn apart(a: &Pose, b: &Pose) -> [f64; 2] {
 }
 
 /// The rows of one mesh, or of the limit: load factor, pose, estimated errors.
-fn rows(table: &Table, elements: &str) -> Result<Vec<(f64, Pose, [f64; 2])>, Box<dyn Error>> {
+fn rows(table: &Table, elements: &str) -> Result<Vec<Stored>, Box<dyn Error>> {
     table
         .select(&[("elements", elements)])?
         .iter()

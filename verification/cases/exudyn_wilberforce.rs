@@ -34,6 +34,8 @@ const ELEMENTS: usize = 18;
 
 /// x, y, z of the bob's centre, and its angles α of R_x(γ) R_y(β) R_z(α) and yaw of R_z(yaw) R_y R_x.
 type State = [f64; 5];
+/// Time, state, estimated errors of position and angles.
+type Stored = (f64, State, [f64; 2]);
 
 /// Times and states.
 type Motion = Vec<(f64, State)>;
@@ -81,7 +83,7 @@ fn apart(a: &State, b: &State) -> [f64; 2] {
 }
 
 /// One run of the table, or its limit: times, states, estimated errors.
-fn stored(table: &Table, run: &str) -> Result<Vec<(f64, State, [f64; 2])>, Box<dyn Error>> {
+fn stored(table: &Table, run: &str) -> Result<Vec<Stored>, Box<dyn Error>> {
     table
         .select(&[("run", run)])?
         .iter()

@@ -30,13 +30,16 @@ mod massless_rod;
 mod mechanisms;
 mod mode_shapes;
 mod motion_details;
+mod motion_fine_points;
 mod moving_start;
+mod mujoco_chains;
 mod objectivity;
 mod path_independence;
 mod petrov_galerkin;
 mod pinocchio;
 mod princeton;
 mod probes;
+mod pyelastica_rods;
 mod radau;
 mod reactions;
 mod reference;
@@ -50,6 +53,7 @@ mod spring_fit;
 mod spring_wire_end;
 mod spring_work;
 mod spun_ring;
+mod static_rods;
 mod straight_to_helix;
 mod time_steps;
 mod wilberforce;
@@ -101,11 +105,14 @@ pub fn all() -> Vec<Case> {
         objectivity::all(),
         motion_details::all(),
         moving_start::all(),
+        motion_fine_points::all(),
+        mujoco_chains::all(),
         path_independence::all(),
         petrov_galerkin::all(),
         pinocchio::all(),
         princeton::all(),
         probes::all(),
+        pyelastica_rods::all(),
         radau::all(),
         reactions::all(),
         reference::all(),
@@ -118,6 +125,7 @@ pub fn all() -> Vec<Case> {
         spring_wire_end::all(),
         spring_work::all(),
         spun_ring::all(),
+        static_rods::all(),
         straight_to_helix::all(),
         time_steps::all(),
         wilberforce::all(),

@@ -2,19 +2,23 @@
 //!
 //! Bending about both axes and torsion couple (Dowell & Traybar 1975; Bauchau et al. 2016).
 
+use std::error::Error;
+
 use cosserat::scene::{LoadKind, Rod, Scene, Statics};
 
+use super::static_rods::load_path;
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::{clamp, load, probe};
 use crate::pieces::{line, rectangle, young_poisson};
 use crate::placement::placements;
-use crate::tip::{Exact, check_tip, half_digit, tip};
+use crate::tip::{Exact, check_tip, tip};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new("princeton::values", "the continuous equations, see continuous::published_tips", values),
-        Case::new("princeton::ansys", "ANSYS, 199 beam elements, β = 45°", ansys),
+        Case::new("princeton::values", "the continuous equations, scripts/references/static_rods.py", values)
+            .reads(&[TIPS]),
+        Case::new("princeton::ansys", "ANSYS, 199 beam elements, β = 45°", ansys).reads(&[ANSYS]),
     ]
 }
 
@@ -24,12 +28,21 @@ pub const HEIGHT: f64 = 3.2024e-3;
 pub const YOUNG: f64 = 71.7e9;
 pub const POISSON: f64 = 0.31;
 
-/// β in degrees, and the tip's displacement.
-pub const TIPS: [(f64, [f64; 3]); 3] = [
-    (30.0, [-0.007_680_972_105, -0.010_207_613_789, 0.079_547_377_12]),
-    (45.0, [-0.014_411_824_833, -0.008_979_196_723, 0.109_113_115_255]),
-    (90.0, [-0.026_021_482_77, 0.0, 0.146_252_357_2]),
-];
+/// The tips.
+pub const TIPS: &str = "continuous/static_princeton.csv";
+const ANSYS: &str = "published/ansys_princeton.csv";
+/// β in the file's words and as a number.
+const ANGLES: [(&str, f64); 3] = [("30.0", 30.0), ("45.0", 45.0), ("90.0", 90.0)];
+
+/// β in degrees, and the tip.
+pub fn tips(checks: &mut Checks) -> Result<Vec<(f64, Exact)>, Box<dyn Error>> {
+    let table = checks.reference(TIPS)?;
+    let exact = |(words, degrees)| {
+        let row = table.row(&[("degrees", words), ("factor", "1.0")])?;
+        Ok((degrees, Exact::of(&row, LENGTH, 1e-10)?))
+    };
+    ANGLES.into_iter().map(exact).collect()
+}
 
 /// J = 0.198 (I_y + I_z).
 pub fn torsion_constant() -> f64 {
@@ -56,11 +69,15 @@ fn scene(degrees: f64, torsion_constant: f64, elements: usize) -> Scene {
 }
 
 fn values(checks: &mut Checks) -> Outcome {
-    for (degrees, [x, y, z]) in TIPS {
-        let exact =
-            Exact { tip: [LENGTH + x, y, z], digits: half_digit(1e-11), length: LENGTH, allowance: 1e-10 };
+    for (degrees, exact) in tips(checks)? {
         let name = format!("β = {degrees}°");
         check_tip(checks, &name, &|elements| scene(degrees, torsion_constant(), elements), 16, &exact)?;
+    }
+    let table = checks.reference(TIPS)?;
+    for (words, degrees) in ANGLES {
+        let rows = table.select(&[("degrees", words)])?;
+        let title = format!("Princeton beam, β = {degrees}°");
+        load_path(checks, &title, &scene(degrees, torsion_constant(), 16), 1.0, rows, "factor")?;
     }
     Ok(())
 }
@@ -68,11 +85,13 @@ fn values(checks: &mut Checks) -> Outcome {
 /// ANSYS computes a torsion constant of its own from a mesh of the section, which it does not print. That of a thin
 /// strip, w h³/3, is the largest there is; the figures must lie between the tips of either.
 fn ansys(checks: &mut Checks) -> Outcome {
+    let table = checks.reference(ANSYS)?;
+    // Printed without signs.
+    let [y, z] = table.row(&[("degrees", "45.0")])?.numbers("y z")?;
     for placement in placements(LENGTH) {
         let ours = tip(&scene(45.0, torsion_constant(), 16), &placement)?;
         let strip = tip(&scene(45.0, WIDTH * HEIGHT.powi(3) / 3.0, 16), &placement)?;
-        let [y, z] = [-0.008_837_226, 0.108_987_937];
-        for (name, ours, strip, ansys) in [("u_y", ours.y, strip.y, y), ("u_z", ours.z, strip.z, z)] {
+        for (name, ours, strip, ansys) in [("u_y", ours.y, strip.y, -y), ("u_z", ours.z, strip.z, z)] {
             checks.absolute(
                 Kind::CrossCode,
                 format!("{name}, {}", placement.name),

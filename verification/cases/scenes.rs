@@ -6,12 +6,12 @@ use cosserat::scene::Scene;
 
 use crate::case::{Case, Checks, Outcome};
 use crate::cases::bend_45;
-use crate::tip::{Exact, check_tip, half_digit};
+use crate::tip::{Exact, check_tip};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     vec![
-        Case::new("scenes::bend_45", "bend_45::values, F = 600", bend),
+        Case::new("scenes::bend_45", "bend_45::values, F = 600", bend).reads(&[bend_45::LOADS]),
         Case::new("scenes::roll_up", "closed form; Euler 1744", roll_up),
     ]
 }
@@ -29,12 +29,7 @@ fn check(checks: &mut Checks, file: &str, exact: &Exact) -> Outcome {
 }
 
 fn bend(checks: &mut Checks) -> Outcome {
-    let exact = Exact {
-        tip: bend_45::mirrored(bend_45::LOADS[2].tip),
-        digits: half_digit(1e-8),
-        length: bend_45::LENGTH,
-        allowance: 1e-9,
-    };
+    let exact = Exact { allowance: 1e-9, ..bend_45::loads(checks)?[2].exact };
     check(checks, "bend_45.toml", &exact)
 }
 

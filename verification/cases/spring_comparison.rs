@@ -8,7 +8,9 @@ use cosserat::solution::Row;
 use nalgebra::Vector3;
 use plotters::prelude::*;
 
-use super::spring::{PRINTED_CURVE, PRINTED_CURVE_REASON, Spring, WIRE_END, places};
+use super::spring::{
+    PRINTED_CURVE, PRINTED_CURVE_REASON, Spring, WIRE_END, WireEnd, places, printed, wire_end,
+};
 use crate::case::{Case, Checks, Kind, Outcome};
 
 /// The cases of this file.
@@ -18,14 +20,20 @@ pub fn all() -> Vec<Case> {
             "spring_comparison::same_unknowns",
             "Harsch & Eugster, section 4.1 and Fig. 1",
             same_unknowns,
-        ),
+        )
+        .slow()
+        .reads(&[WIRE_END]),
         Case::new(
             "spring_comparison::se3_curve",
             "authors' program, 150 SE(3) elements, fit of 151 samples",
             se3_curve,
-        ),
+        )
+        .slow()
+        .reads(&[PRINTED]),
     ]
 }
+
+const PRINTED: &str = "authors/spring_se3.csv";
 
 fn se3(force: f64) -> Spring {
     Spring { interpolation: InterpolationKind::Se3, ..Spring::new(force, 150, 1) }
@@ -37,8 +45,9 @@ fn same_unknowns(checks: &mut Checks) -> Outcome {
     let line = "one line of a printed figure: 1/400 of its axis of 0.6 m";
     let mut distances =
         ["R12 from SE(3)", "R12 from exact", "SE(3) from exact"].map(|name| (name, Points::new()));
+    let loads = wire_end(checks)?;
     for (index, placement) in places().iter().enumerate() {
-        for (force, exact) in WIRE_END.into_iter().filter(|(force, _)| *force >= 5.0) {
+        for &WireEnd { force, exact, .. } in loads.iter().filter(|load| load.force >= 5.0) {
             let title = format!("{force} N, {}", placement.name);
             let exact = Vector3::from(exact);
             let quadratic = Spring::new(force, 75, 2).displacement(placement)?;
@@ -63,7 +72,7 @@ fn same_unknowns(checks: &mut Checks) -> Outcome {
             }
         }
     }
-    plot(&crate::report::folder().join("spring_comparison.svg"), &distances)
+    plot(&crate::report::folder().join("spring_comparison.svg"), &loads, &distances)
 }
 
 /// The authors' SE(3) curve. Samples at the nodes alone: the fit has no residual, its nodes are on the curve.
@@ -71,16 +80,15 @@ fn same_unknowns(checks: &mut Checks) -> Outcome {
 /// It is that of *two* Gauss points, the full rule, which their program takes by default; the one point that
 /// is the two-node element's own gives 79.553 / 150.227 / 272.469 / 499.805 / 572.560 mm.
 fn se3_curve(checks: &mut Checks) -> Outcome {
-    let printed =
-        [(5.0, 79.563e-3), (10.0, 150.242e-3), (20.0, 272.494e-3), (50.0, 499.970e-3), (100.0, 572.612e-3)];
+    let printed = printed(checks, PRINTED)?;
     for placement in places() {
-        for (force, expected) in printed {
+        for &[force, expected, digit] in &printed {
             let spring = Spring { quadrature: QuadratureKind::Full, ..se3(force) };
             checks.absolute(
                 Kind::CrossCode,
                 format!("u_z at {force} N [m], {}", placement.name),
                 (spring.displacement(&placement)?.z, expected),
-                PRINTED_CURVE,
+                PRINTED_CURVE + digit,
                 PRINTED_CURVE_REASON,
             );
         }
@@ -91,7 +99,7 @@ fn se3_curve(checks: &mut Checks) -> Outcome {
 type Points = Vec<(f64, f64)>;
 
 /// F over u_z of both, the exact points, and how far apart they are at the exact loads.
-fn plot(path: &Path, distances: &[(&'static str, Points)]) -> Outcome {
+fn plot(path: &Path, loads: &[WireEnd], distances: &[(&'static str, Points)]) -> Outcome {
     let [as_is, ..] = places();
     let curve = |spring: Spring| -> Result<Points, Box<dyn Error>> {
         let solution = spring.solve(&as_is)?;
@@ -120,7 +128,7 @@ fn plot(path: &Path, distances: &[(&'static str, Points)]) -> Outcome {
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
     }
-    let exact = WIRE_END.map(|(force, u)| Circle::new((u[2], force), 4, BLACK.filled()));
+    let exact = loads.iter().map(|load| Circle::new((load.exact[2], load.force), 4, BLACK.filled()));
     chart.draw_series(exact)?.label("exact").legend(|(x, y)| Circle::new((x + 10, y), 4, BLACK.filled()));
     let corner = SeriesLabelPosition::UpperLeft;
     chart.configure_series_labels().position(corner).background_style(WHITE).draw()?;

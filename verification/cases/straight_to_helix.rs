@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use cosserat::scene::{Basis, CurveShape, InterpolationKind, LoadKind, Rod, Scene, Statics};
 
+use super::static_rods::load_path;
 use crate::case::{Case, Checks, Outcome};
 use crate::measure::{clamp, load, probe};
 use crate::pieces::{circle, young_shear};
@@ -15,7 +16,16 @@ use crate::tip::{Exact, check_tip};
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
     const SOURCE: &str = "closed form; Harsch, Sailer & Eugster 2023";
-    vec![Case::new("straight_to_helix::r12", SOURCE, r12), Case::new("straight_to_helix::se3", SOURCE, se3)]
+    vec![
+        Case::new("straight_to_helix::r12", SOURCE, r12),
+        Case::new("straight_to_helix::se3", SOURCE, se3),
+        Case::new(
+            "straight_to_helix::pulled",
+            "the continuous equations, scripts/references/static_rods.py",
+            pulled,
+        )
+        .reads(&[PULLED]),
+    ]
 }
 
 const COILS: f64 = 2.0;
@@ -86,6 +96,30 @@ fn se3(checks: &mut Checks) -> Outcome {
     // More than four, so that an element turns by less than half a turn.
     for elements in [10, 16, 80] {
         check(checks, InterpolationKind::Se3, (elements, 1))?;
+    }
+    Ok(())
+}
+
+const PULLED: &str = "continuous/static_two_coils.csv";
+
+/// With a dead tip force on top there is no closed form: the last section turns by more than two turns under it.
+fn pulled(checks: &mut Checks) -> Outcome {
+    let table = checks.reference(PULLED)?;
+    for (words, slenderness) in [("100.0", 1e2), ("10000.0", 1e4)] {
+        let diameter = length() / slenderness;
+        let unit = YOUNG * PI * diameter.powi(4) / 64.0 / length().powi(2);
+        let scene = |elements| {
+            let mut scene = scene(slenderness, InterpolationKind::R12, elements, 6);
+            let force = [2.0, -6.0, 9.0].map(|share| share * unit);
+            scene.load.push(load(LoadKind::Force, "rod@1", force));
+            scene
+        };
+        let row = table.row(&[("slenderness", words), ("factor", "1.0")])?;
+        let exact = Exact::of(&row, length(), 1e-10)?;
+        let name = format!("with a force, slenderness {words}");
+        check_tip(checks, &name, &scene, 48, &exact)?;
+        let title = format!("two coils by a body end moment and a dead force, slenderness {words}");
+        load_path(checks, &title, &scene(48), 1.0, table.select(&[("slenderness", words)])?, "factor")?;
     }
     Ok(())
 }

@@ -6,8 +6,10 @@ use cosserat::rotation::{
 };
 use nalgebra::{Vector3, Vector4};
 
-use super::{MATRIX, Quantity, compare, condition, entries, matrix, smallness, vector};
-use crate::case::{Case, Checks, Outcome};
+use super::{
+    MATRIX, PINOCCHIO, PINOCCHIO_REASON, Quantity, compare, condition, entries, matrix, smallness, vector,
+};
+use crate::case::{Case, Checks, Kind, Outcome};
 
 const SOURCE: &str = "Pinocchio 4.1.0 and mpmath, scripts/references/pinocchio_kinematics.py";
 
@@ -21,7 +23,48 @@ pub fn all() -> Vec<Case> {
         Case::new("pinocchio::rotation_tangents", SOURCE, tangents)
             .reads(&["pinocchio/rotation_tangents.csv"]),
         Case::new("pinocchio::quaternions", SOURCE, quaternions).reads(&["pinocchio/quaternions.csv"]),
+        Case::new("pinocchio::weak_ranges", SOURCE, weak_ranges).reads(&WEAK),
     ]
+}
+
+const WEAK: [&str; 5] = [
+    "pinocchio/weak_ranges.csv",
+    "pinocchio/rotation_logarithm.csv",
+    "pinocchio/rotation_tangents.csv",
+    "pinocchio/motion_logarithm.csv",
+    "pinocchio/motion_tangents.csv",
+];
+
+/// No figure of Pinocchio's is used where it was found to lose more digits than its rows are said to be good for.
+fn weak_ranges(checks: &mut Checks) -> Outcome {
+    let [weak, files @ ..] = WEAK;
+    let weak = checks.reference(weak)?;
+    let maps = [Some("log3"), None, Some("log6"), None];
+    for (file, map) in files.into_iter().zip(maps) {
+        let table = checks.reference(file)?;
+        let (mut weakest, mut ranges) = (0.0_f64, 0);
+        for row in table.select(&[("by", "pinocchio")])? {
+            let map = map.map_or_else(|| row.word("map"), Ok)?;
+            let found = weak.row(&[("map", map), ("range", row.word("range")?)])?;
+            weakest = weakest.max(found.number("error")?);
+            ranges += 1;
+        }
+        checks.above(
+            Kind::Invariant,
+            format!("{file}: rows of Pinocchio's"),
+            f64::from(ranges),
+            100.0,
+            "it is used",
+        );
+        checks.below(
+            Kind::CrossCode,
+            format!("{file}: Pinocchio's error where it is used, against 50 digits"),
+            weakest,
+            PINOCCHIO,
+            PINOCCHIO_REASON,
+        );
+    }
+    Ok(())
 }
 
 fn exponential(checks: &mut Checks) -> Outcome {

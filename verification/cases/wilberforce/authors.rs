@@ -20,6 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::swing::{Swing, envelope, extrema, largest, peak};
 use super::{DENSITY, Pendulum, SHEAR, paper_steps, places};
 use crate::case::{Case, Checks, Kind, Outcome};
+use crate::references::Row;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
@@ -28,26 +29,38 @@ pub fn all() -> Vec<Case> {
             "wilberforce::authors_table",
             "authors' program, 18 elements, p = 2, fit of 45 samples, Δt = 5 ms, ρ∞ = 0.8, tolerance 1e-8",
             table,
-        ),
+        ).slow()
+        .reads(&[TABLE]),
         Case::new(
             "wilberforce::envelopes",
             "authors' program: half the difference of consecutive extrema at their mid-time, parabolas between",
             envelopes,
-        ),
+        )
+        .reads(&[ENVELOPE_Z, ENVELOPE_ALPHA]),
     ]
 }
 
-/// z [m] and α [rad] at 1, 2, … 8 s.
-const TABLE: [(f64, f64); 8] = [
-    (-89.597e-3, 0.1959),
-    (-71.769e-3, 0.4142),
-    (-24.525e-3, -0.1276),
-    (-99.859e-3, 0.0710),
-    (-51.971e-3, 0.6809),
-    (-39.985e-3, -0.5746),
-    (-100.578e-3, 0.3527),
-    (-35.774e-3, 0.7819),
-];
+const TABLE: &str = "authors/wilberforce.csv";
+const ENVELOPE_Z: &str = "authors/wilberforce_envelope_z.csv";
+const ENVELOPE_ALPHA: &str = "authors/wilberforce_envelope_alpha.csv";
+
+/// A printed row at a whole second.
+struct Printed {
+    time: f64,
+    /// z [m] and α [rad].
+    figures: (f64, f64),
+    /// Half a unit of their last digits.
+    digits: (f64, f64),
+}
+
+fn printed(checks: &mut Checks) -> Result<Vec<Printed>, Box<dyn Error>> {
+    let row = |row: Row| {
+        let [time, z, z_digit] = row.numbers("time z z_half_digit")?;
+        let [alpha, digit] = row.numbers("alpha alpha_half_digit")?;
+        Ok(Printed { time, figures: (1e-3 * z, alpha), digits: (1e-3 * z_digit, digit) })
+    };
+    checks.reference(TABLE)?.rows().map(row).collect()
+}
 
 /// ‖A⁰ᵀ r⁰,ξ‖/‖r⁰,ξ‖ at the Gauss points of the fitted reference: the mean, and the mean departure from it.
 fn shortening() -> Result<(f64, f64), Box<dyn Error>> {
@@ -96,22 +109,24 @@ fn table(checks: &mut Checks) -> Outcome {
     let halved = seconds(&theirs(rho).swing_as_is(&half)?);
     let both = "the spread of ρ times what 1 − ρ does; 1e-3 of the error of the time step (4/3 of the change with half \
                 the step), for the norms of the quaternions; the two tolerances; rounding of the printed figure";
-    for (index, (z, alpha)) in TABLE.into_iter().enumerate() {
-        let (time, part) = (index + 1, spread / (1.0 - rho));
+    let printed = printed(checks)?;
+    for (index, row) in printed.iter().enumerate() {
+        let Printed { time, figures: (z, alpha), digits } = *row;
+        let part = spread / (1.0 - rho);
         let bound = |ours: f64, plain: f64, halved: f64| {
             part * (ours - plain).abs() + 1e-3 * (4.0 / 3.0) * (ours - halved).abs()
         };
         let (ours, plain, halved) = (same[index], paper[index], halved[index]);
-        let allowed = bound(ours.0, plain.0, halved.0) + 0.5e-6 + 2e-8;
+        let allowed = bound(ours.0, plain.0, halved.0) + digits.0 + 2e-8;
         checks.absolute(Kind::CrossCode, format!("z at {time} s [m]"), (ours.0, z), allowed, both);
-        let allowed = bound(ours.1, plain.1, halved.1) + 0.5e-4 + 8e-5;
+        let allowed = bound(ours.1, plain.1, halved.1) + digits.1 + 8e-5;
         checks.absolute(Kind::CrossCode, format!("α at {time} s [rad]"), (ours.1, alpha), allowed, both);
 
         // With the paper's J the wire is softer by 1 − ρ.
-        let turns = 15.7 * 0.5 * (1.0 - rho) * time as f64;
+        let turns = 15.7 * 0.5 * (1.0 - rho) * time;
         let reason = "frequencies off by half of 1 − ρ: a phase of 15.7 rad/s · ½ (1 − ρ) t on the largest swing, 42 mm \
                       or 2.4 rad; a beat of 1.72 rad/s likewise, and the stretch of 44 mm times 1 − ρ";
-        let allowed = 42e-3 * turns + 44e-3 * (1.0 - rho) * 2.0 + allowed_rounding(0.5e-6);
+        let allowed = 42e-3 * turns + 44e-3 * (1.0 - rho) * 2.0 + 2.0 * digits.0;
         checks.absolute(
             Kind::CrossCode,
             format!("z at {time} s, J of the paper [m]"),
@@ -119,11 +134,11 @@ fn table(checks: &mut Checks) -> Outcome {
             allowed,
             reason,
         );
-        let allowed = 2.4 * turns + allowed_rounding(0.5e-4);
+        let allowed = 2.4 * turns + 2.0 * digits.1;
         let name = format!("α at {time} s, J of the paper [rad]");
         checks.absolute(Kind::CrossCode, name, (plain.1, alpha), allowed, reason);
     }
-    let apart = (paper[7].0 - TABLE[7].0).abs();
+    let apart = (paper[7].0 - printed[7].figures.0).abs();
     let reason = "the two definitions of J must be told apart, by a hundred times what is left otherwise";
     checks.above(Kind::CrossCode, "z at 8 s, J of the paper, from the table [m]", apart, 1e-3, reason);
 
@@ -131,7 +146,8 @@ fn table(checks: &mut Checks) -> Outcome {
     let stiff = Pendulum { density: DENSITY, ..theirs(rho) };
     let stiff = seconds(&stiff.swing_as_is(&options)?);
     let worst = |runs: &[(f64, f64)], of: fn(&(f64, f64)) -> f64| {
-        runs.iter().zip(&TABLE).map(|(run, printed)| (of(run) - of(printed)).abs()).fold(0.0, f64::max)
+        let apart = |(run, row): (&(f64, f64), &Printed)| (of(run) - of(&row.figures)).abs();
+        runs.iter().zip(&printed).map(apart).fold(0.0, f64::max)
     };
     let reason = "four times the rounding of a printed figure: nothing else is left";
     checks.below(Kind::Pinned, "z, worst of eight [m]", worst(&same, |p| p.0), 2e-6, reason);
@@ -141,10 +157,6 @@ fn table(checks: &mut Checks) -> Outcome {
     let found = worst(&stiff, |p| p.0);
     checks.above(Kind::CrossCode, "z, worst of eight, mass with the paper's J [m]", found, 3e-6, reason);
     Ok(())
-}
-
-fn allowed_rounding(half_digit: f64) -> f64 {
-    2.0 * half_digit
 }
 
 /// Where one is smallest the other is largest.
@@ -159,16 +171,20 @@ fn envelopes(checks: &mut Checks) -> Outcome {
     let turned = peak(&alpha, first, 1.0);
     let passed = largest(&alpha, second, -1.0);
     let figures = [
-        ("z smallest", smallest, (1.823, 18.6e-3), 0.05e-3),
-        ("z largest", revival, (3.642, 42.4e-3), 0.05e-3),
-        ("α largest", turned, (1.817, 2.368), 0.5e-3),
+        ("z smallest", smallest, ENVELOPE_Z, "smallest", 1e-3),
+        ("z largest", revival, ENVELOPE_Z, "largest", 1e-3),
+        ("α largest", turned, ENVELOPE_ALPHA, "largest", 1.0),
     ];
-    for (name, found, printed, digit) in figures {
+    for (name, found, file, which, unit) in figures {
+        let table = checks.reference(file)?;
+        let row = table.row(&[("which", which)])?;
+        let [time, time_digit, value, digit] = row.numbers("time time_half_digit value value_half_digit")?;
+        let (printed, digit) = ((time, unit * value), unit * digit);
         let reason = "half a unit of the last digit; the table of z and α leaves 1 µm and 1e-4 rad, 5e-5 of either \
                       envelope, whose parabola has its top at √(2 · 5e-5)/1.72 rad/s = 6 ms at worst if three points \
                       are off in turn, and a tenth of that as they are off together";
         let what = format!("time of the envelope, {name} [s]");
-        checks.absolute(Kind::CrossCode, what, (found.0, printed.0), 0.5e-3 + 0.6e-3, reason);
+        checks.absolute(Kind::CrossCode, what, (found.0, printed.0), time_digit + 0.6e-3, reason);
         let what = format!("envelope, {name} [m, rad]");
         checks.absolute(Kind::CrossCode, what, (found.1, printed.1), 1.1 * digit, reason);
     }
