@@ -28,8 +28,11 @@ pub const BENDING: f64 = 2.0;
 /// The tips.
 pub const TIPS: &str = "continuous/static_cantilever.csv";
 
+/// Name of the row, α², where the tip is.
+pub type Tip = (&'static str, f64, Exact);
+
 /// α² in the file's words and as a number, and the tip, under the whole load.
-pub fn tips(checks: &mut Checks) -> Result<[(&'static str, f64, Exact); 3], Box<dyn Error>> {
+pub fn tips(checks: &mut Checks) -> Result<[Tip; 3], Box<dyn Error>> {
     let table = checks.reference(TIPS)?;
     let exact = |words| {
         let row = table.row(&[("theory", "cosserat"), ("alpha_squared", words), ("factor", "1.0")])?;
