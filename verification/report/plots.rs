@@ -90,11 +90,10 @@ pub fn convergence(checks: &[Check]) -> Outcome<Option<Plot>> {
             .light_line_style(TRANSPARENT)
             .bold_line_style(BLACK.mix(0.1))
             .label_style(FONT)
+            .x_labels(6)
             .x_desc("elements or steps")
             .y_desc("error")
-            .x_label_formatter(&|size| {
-                if size.fract() == 0.0 { format!("{:.0}", size.exp2()) } else { String::new() }
-            })
+            .x_label_formatter(&|size| short(size.exp2(), 2))
             .y_label_formatter(&|error| format!("{error:.0e}"))
             .draw()?;
         for ((check, points), colour) in lines.iter().zip(COLOURS) {
@@ -144,8 +143,8 @@ pub fn trajectory(trajectory: &Trajectory) -> Outcome<Option<Plot>> {
             .y_labels(6)
             .x_desc(trajectory.axes[0])
             .y_desc(trajectory.axes[1])
-            .x_label_formatter(&|value| short(*value))
-            .y_label_formatter(&|value| short(*value))
+            .x_label_formatter(&|value| short(*value, 3))
+            .y_label_formatter(&|value| short(*value, 3))
             .draw()?;
         let (ours, theirs) = (COLOURS[0], COLOURS[1]);
         chart.draw_series(LineSeries::new(measured, ours.stroke_width(2)))?;
@@ -170,9 +169,9 @@ fn widened(span: &Range<f64>) -> Range<f64> {
     span.start - air..span.end + air
 }
 
-/// A few digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+/// With so many digits after the first.
+fn short(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.digits$e}").parse().unwrap_or(value);
     let size = rounded.abs();
     if size != 0.0 && !(1e-3..1e5).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
 }
