@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use cosserat::scene::{LoadKind, Rod, Scene, Section, Statics};
+use cosserat::scene::{LoadKind, Rod, Scene, Section, Statics, Theory};
 
 use super::static_rods::load_path;
 use crate::case::{Case, Checks, Outcome};
@@ -19,6 +19,12 @@ pub fn all() -> Vec<Case> {
     vec![
         Case::new("cantilever::values", SOURCE, values).reads(&[TIPS]),
         Case::new("cantilever::constrained_theories", SOURCE, constrained_theories).reads(&[TIPS]),
+        Case::new("cantilever::shear_rigid", SOURCE, shear_rigid)
+            .reads(&[TIPS])
+            .awaits("rods without shear, theory = \"shear-rigid\""),
+        Case::new("cantilever::inextensible", SOURCE, inextensible)
+            .reads(&[TIPS])
+            .awaits("rods without shear and stretch, theory = \"inextensible\""),
     ]
 }
 
@@ -98,4 +104,28 @@ fn constrained_theories(checks: &mut Checks) -> Outcome {
         check_tip(checks, &name, &|elements| scene(alpha_squared, elements, stiffness), 32, &exact)?;
     }
     Ok(())
+}
+
+/// The tips of a theory, whose reference has that strain ruled out as well.
+fn theory(checks: &mut Checks, theory: Theory, name: &str, loads: &[(&str, f64)]) -> Outcome {
+    let table = checks.reference(TIPS)?;
+    for &(words, alpha_squared) in loads {
+        let row = table.row(&[("theory", name), ("alpha_squared", words), ("factor", "1.0")])?;
+        let exact = Exact::of(&row, LENGTH, 1e-10)?;
+        let scene = |elements| {
+            let mut scene = scene(alpha_squared, elements, STIFFNESS);
+            scene.rod[0].theory = theory;
+            scene
+        };
+        check_tip(checks, &format!("{name}, α² = {words}"), &scene, 32, &exact)?;
+    }
+    Ok(())
+}
+
+fn shear_rigid(checks: &mut Checks) -> Outcome {
+    theory(checks, Theory::ShearRigid, "shear-rigid", &[("10", 10.0)])
+}
+
+fn inextensible(checks: &mut Checks) -> Outcome {
+    theory(checks, Theory::Inextensible, "inextensible", &[("10/3", 10.0 / 3.0), ("10", 10.0)])
 }

@@ -22,6 +22,8 @@ pub fn all() -> Vec<Case> {
         Case::new("convergence_orders::tip", SOURCE, tip).reads(&[TIPS]),
         Case::new("convergence_orders::r12", SOURCE, r12),
         Case::new("convergence_orders::r12_values", SOURCE, r12_values),
+        Case::new("convergence_orders::quaternion", SOURCE, quaternion)
+            .awaits("interpolation = \"quaternion\""),
         Case::new("convergence_orders::se3", SOURCE, se3),
         Case::new("convergence_orders::full_quadrature_locks", SOURCE, full_quadrature_locks),
     ]
@@ -206,7 +208,28 @@ fn with_tip(slenderness: f64, elements: usize) -> Scene {
     scene
 }
 
+/// The absolute caps on the finest mesh, and why.
+type Caps = fn(usize) -> ([f64; 2], &'static str);
+
 fn r12(checks: &mut Checks) -> Outcome {
+    orders(checks, InterpolationKind::R12, caps)
+}
+
+/// Positions as with R12, and the nodal quaternions in between.
+fn quaternion(checks: &mut Checks) -> Outcome {
+    let caps = |degree| {
+        // κ h, with κ as in `caps`.
+        let turn = 0.5 * TAU / MESHES[2] as f64;
+        let remainder = turn.powi(degree as i32 + 1);
+        (
+            [LENGTH * remainder, remainder],
+            "the remainder of an interpolation, (κh)^(p+1) with a constant of one",
+        )
+    };
+    orders(checks, InterpolationKind::Quaternion, caps)
+}
+
+fn orders(checks: &mut Checks, interpolation: InterpolationKind, caps: Caps) -> Outcome {
     for (_, slenderness) in SLENDERNESS {
         let exact = continuous(slenderness).solve(POINTS - 1)?;
         for (degree, node_spacing) in [
@@ -217,7 +240,7 @@ fn r12(checks: &mut Checks) -> Outcome {
             (4, NodeSpacing::GaussLobatto),
             (4, NodeSpacing::Equal),
         ] {
-            let mesh = Mesh { node_spacing, ..Mesh::r12(slenderness, degree, 1) };
+            let mesh = Mesh { node_spacing, interpolation, ..Mesh::r12(slenderness, degree, 1) };
             let (caps, reason) = caps(degree);
             for placement in placements(LENGTH) {
                 let errors = ladder(&mesh, &MESHES, &placement, &exact)?;
@@ -225,7 +248,7 @@ fn r12(checks: &mut Checks) -> Outcome {
                     [("centreline", &errors[0], caps[0]), ("rotation", &errors[1], caps[1])]
                 {
                     let name = format!(
-                        "{what}, p = {degree}, {node_spacing:?}, slenderness {slenderness:.0e}, {}",
+                        "{what}, {interpolation:?}, p = {degree}, {node_spacing:?}, slenderness {slenderness:.0e}, {}",
                         placement.name
                     );
                     checks.order(&name, &MESHES, errors, ((degree + 1) as f64, 0.1), ORDER);

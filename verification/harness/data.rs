@@ -116,7 +116,7 @@ fn scripts(checks: &mut Checks) -> Outcome {
 }
 
 /// Modules that the scripts share.
-const HELPERS: [&str; 1] = ["datapackage.py"];
+const HELPERS: [&str; 2] = ["datapackage.py", "rod_equations.py"];
 
 fn used(checks: &mut Checks) -> Outcome {
     let cases = crate::cases::all();

@@ -41,7 +41,8 @@ pub fn all() -> Vec<Case> {
 }
 
 const TABLE: &str = "authors/wilberforce.csv";
-const ENVELOPE_Z: &str = "authors/wilberforce_envelope_z.csv";
+/// Where the envelope of z is smallest and largest.
+pub const ENVELOPE_Z: &str = "authors/wilberforce_envelope_z.csv";
 const ENVELOPE_ALPHA: &str = "authors/wilberforce_envelope_alpha.csv";
 
 /// A printed row at a whole second.
