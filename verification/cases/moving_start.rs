@@ -1,4 +1,4 @@
-//! A pendulum that is given a push: what the joint bears in the very first steps.
+//! A pendulum that is given a push: what the joint bears in the very first steps. And a fall from rest.
 //!
 //! In one plane the angle φ from the hanging position tells everything: with the inertia I about the hinge,
 //! I ω² = I ω₀² + 2 m g l (cos φ − cos φ₀), I ω̇ = −m g l sin φ, and the hinge bears m (a_S − g). Where the pendulum is
@@ -9,12 +9,16 @@ use nalgebra::Vector3;
 
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::measure::probe;
+use crate::motion::follow;
 use crate::placement::{Placement, placements};
 use crate::steps::{body, force_at, halved_twice, joint, position_at};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
-    vec![Case::new("moving_start::reactions", "equation of a plane pendulum; energy", reactions)]
+    vec![
+        Case::new("moving_start::reactions", "equation of a plane pendulum; energy", reactions),
+        Case::new("moving_start::fall", "free fall: gravity brings m g²t²/2", fall),
+    ]
 }
 
 const LENGTH: f64 = 0.5;
@@ -84,4 +88,33 @@ fn first_order(checks: &mut Checks, placement: &Placement, errors: &[f64]) {
         "first order: what the force changes by in one step is ω h of it, with ω up to 8 rad/s",
     );
     checks.order(name, &[1, 2, 4], errors, (1.0, 0.15), "the first multipliers are of first order");
+}
+
+/// All energy of a fall comes from gravity: none of it is a surplus that is worth a warning.
+fn fall(checks: &mut Checks) -> Outcome {
+    let scene = Scene {
+        gravity: Some([0.0, 0.0, -GRAVITY]),
+        body: vec![body("stone", MASS, [0.03, INERTIA, 0.04], [0.0; 3])],
+        dynamics: Some(Dynamics::new(0.2, STEP)),
+        ..Scene::default()
+    };
+    for placement in placements(LENGTH) {
+        let run = follow(&placement.apply(&scene))?;
+        let kinetic = run.energies.last().ok_or("no energies")?.kinetic;
+        checks.relative(
+            Kind::ClosedForm,
+            format!("kinetic energy [J], {}", placement.name),
+            (kinetic, 0.5 * MASS * (GRAVITY * 0.2).powi(2)),
+            1e-12,
+            "constant acceleration is integrated exactly: rounding of 100 steps",
+        );
+        checks.absolute(
+            Kind::Invariant,
+            format!("warnings, {}", placement.name),
+            (run.warnings.len() as f64, 0.0),
+            0.0,
+            "nothing appears that no load has brought",
+        );
+    }
+    Ok(())
 }

@@ -31,7 +31,7 @@ pub fn all() -> Vec<Case> {
         Case::new("static_rods::tips_and_clamps", SOURCE, tips_and_clamps).reads(&[LOADS]),
         Case::new("static_rods::shapes", SOURCE, shapes).reads(&[SHAPES]),
         Case::new("static_rods::spring_clamp", SOURCE, spring_clamp).reads(&[WIRE_END, SPRING_AXIS]).slow(),
-        Case::new("static_rods::spring_shape", SOURCE, spring_shape).reads(&[SPRING_SHAPE]),
+        Case::new("static_rods::spring_shape", SOURCE, spring_shape).reads(&[SPRING_SHAPE]).slow(),
     ]
 }
 
