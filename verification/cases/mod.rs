@@ -45,6 +45,7 @@ mod reactions;
 mod reference;
 mod right_angle_cantilever;
 mod roll_up;
+mod rotation_limits;
 mod scenes;
 mod spring;
 mod spring_axis;
@@ -118,6 +119,7 @@ pub fn all() -> Vec<Case> {
         reference::all(),
         right_angle_cantilever::all(),
         roll_up::all(),
+        rotation_limits::all(),
         scenes::all(),
         spring_axis::all(),
         spring_comparison::all(),
