@@ -8,7 +8,8 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
 use crate::lagrange::Basis;
-use crate::rotation::skew;
+use crate::lanes::{Columns, Processor, lanes, product, times, vector};
+use crate::linear_solver::NODE;
 
 /// Diagonal stiffness of a cross-section: K_γ = diag(EA, GA_y, GA_z) [N], K_κ = diag(GI_p, EI_y, EI_z) [N m²].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,8 +85,9 @@ impl Stiffness {
 
 /// Adds fⁱⁿᵗ, eq. (11): f_r,i = −∫ N_i′ A n dx, f_φ,i = −∫ N_i′ m − N_i (γ̄ × n + κ̄ × m) dx,
 /// and writes the constitutive stress at every quadrature point.
-#[inline]
+#[inline(always)]
 pub fn internal_force<const N: usize, I: Interpolation<N>>(
+    processor: impl Processor,
     nodes: &[Pose; N],
     rule: &[Basis<N>],
     reference: &[ReferencePoint],
@@ -94,10 +96,10 @@ pub fn internal_force<const N: usize, I: Interpolation<N>>(
     result: &mut ElementForce<N>,
 ) -> Result<(), HalfTurn> {
     for ((basis, reference), stress) in rule.iter().zip(reference).zip(stresses) {
-        let strain = I::strain(nodes, basis)?;
-        *stress = stiffness.stress(&strain.gamma, &strain.kappa, reference);
-        let force = strain.rotation * stress.force;
-        let couple = strain.gamma.cross(&stress.force) + strain.kappa.cross(&stress.moment);
+        let (strain, _) = I::point(processor, nodes, basis)?;
+        *stress = stiffness.stress(&vector(&strain.gamma), &vector(&strain.kappa), reference);
+        let force = vector(&strain.rotation.times_vector(processor, &lanes(&stress.force)));
+        let couple = vector(&strain.gamma).cross(&stress.force) + vector(&strain.kappa).cross(&stress.moment);
         let (force_norm, moment_norm, couple_norm) = (force.norm(), stress.moment.norm(), couple.norm());
         for i in 0..N {
             let (value, slope) = (basis.weight * basis.value[i], basis.weight * basis.derivative[i]);
@@ -110,12 +112,20 @@ pub fn internal_force<const N: usize, I: Interpolation<N>>(
     Ok(())
 }
 
-/// Adds the tangent of the internal force; the geometric part is built from the given `stresses`.
+/// Writes the tangent of the internal force; the geometric part is built from the given `stresses`.
 ///
 /// With δn = K_γ δγ̄/J, δm = K_κ δκ̄/J:
 /// −δf_r,i = ∫ N_i′ (A δn + δA n), −δf_φ,i = ∫ N_i′ δm − N_i (γ̄ × δn − n × δγ̄ + κ̄ × δm − m × δκ̄).
-#[inline]
+///
+/// With ∂γ̄/∂δr_j = N_j′ G, Γ_j = ∂γ̄/∂δφ_j, X_j = ∂κ̄/∂δφ_j, U = ñ − γ̄~ K_γ/J, V = m̃ − κ̄~ K_κ/J that is at a point
+///
+/// ```text
+/// K_ij = ⎛ N_i′ N_j′ A K_γ/J G   N_i′ (A K_γ/J Γ_j + ∂(A n)/∂φ_j)        ⎞
+///        ⎝ N_i  N_j′ U G         N_i′ K_κ/J X_j + N_i (U Γ_j + V X_j)    ⎠
+/// ```
+#[inline(always)]
 pub fn internal_tangent<const N: usize, I: Interpolation<N>>(
+    processor: impl Processor,
     nodes: &[Pose; N],
     rule: &[Basis<N>],
     reference: &[ReferencePoint],
@@ -123,34 +133,80 @@ pub fn internal_tangent<const N: usize, I: Interpolation<N>>(
     stresses: &[Stress],
     tangent: &mut ElementTangent<N>,
 ) -> Result<(), HalfTurn> {
+    let mut first = true;
     for ((basis, reference), stress) in rule.iter().zip(reference).zip(stresses) {
-        let d = I::strain_derivative(nodes, basis)?;
-        let turn = I::turn(nodes, basis)?;
+        let (strain, point) = I::point(processor, nodes, basis)?;
         let scale = basis.weight / reference.jacobian;
-        let force_stiffness = Matrix3::from_diagonal(&(stiffness.force * scale));
-        let moment_stiffness = Matrix3::from_diagonal(&(stiffness.moment * scale));
-        let rotated_stiffness = d.strain.rotation * force_stiffness;
-        // Factors of N_i in the moment rows.
-        let from_gamma = skew(&(stress.force * basis.weight)) - skew(&d.strain.gamma) * force_stiffness;
-        let from_kappa = skew(&(stress.moment * basis.weight)) - skew(&d.strain.kappa) * moment_stiffness;
-        let weighted_force = stress.force * basis.weight;
+        let (force_stiffness, moment_stiffness) = (stiffness.force * scale, stiffness.moment * scale);
+        let force = lanes(&(stress.force * basis.weight));
+        let moment = lanes(&(stress.moment * basis.weight));
+        let rotated_stiffness = strain.rotation.times_diagonal(&force_stiffness);
+        let from_gamma = Columns::skew(&force).plus_scaled(
+            processor,
+            -1.0,
+            &Columns::skew(&strain.gamma).times_diagonal(&force_stiffness),
+        );
+        let from_kappa = Columns::skew(&moment).plus_scaled(
+            processor,
+            -1.0,
+            &Columns::skew(&strain.kappa).times_diagonal(&moment_stiffness),
+        );
+        let moment_stiffness = lanes(&moment_stiffness);
+        let force_r = rotated_stiffness.times(processor, &strain.gamma_translation);
+        let couple_r = from_gamma.times(processor, &strain.gamma_translation);
+        let by_translation = stacked(&force_r, &couple_r);
         for j in 0..N {
-            let force_r = rotated_stiffness * d.gamma_translation[j];
-            let force_phi = rotated_stiffness * d.gamma_rotation[j] + I::rotated(&turn, j, &weighted_force);
-            let moment_phi = moment_stiffness * d.kappa_rotation[j];
-            let couple_r = from_gamma * d.gamma_translation[j];
-            let couple_phi = from_gamma * d.gamma_rotation[j] + from_kappa * d.kappa_rotation[j];
+            let node = (j, &nodes[j], basis);
+            let kappa = I::kappa_rotation(processor, &point, node);
+            let [force_phi, couple_phi] =
+                I::gamma_rotation(processor, &point, node, [&rotated_stiffness, &from_gamma]);
+            let force_phi =
+                force_phi.plus_scaled(processor, 1.0, &I::turned(processor, &point, node, &force));
+            let p = stacked(&force_phi, &kappa.diagonal_times(&moment_stiffness));
+            let couple_phi = couple_phi.plus_product(processor, &from_kappa, &kappa);
+            let q = stacked(&couple_phi, &couple_phi);
+            // Not N_i′ N_j′ first: its rounding, the same in every element, would hold a long rod like springs.
+            let mut translation = by_translation;
+            for column in &mut translation {
+                *column = times(basis.derivative[j], column);
+            }
             for i in 0..N {
                 let (value, slope) = (basis.value[i], basis.derivative[i]);
-                let block = &mut tangent[i][j];
-                add(block, 0, 0, &(force_r * slope));
-                add(block, 0, 3, &(force_phi * slope));
-                add(block, 3, 0, &(couple_r * value));
-                add(block, 3, 3, &(moment_phi * slope + couple_phi * value));
+                let by_row = [slope, slope, slope, value, value, value];
+                let lower = [0.0, 0.0, 0.0, value, value, value];
+                let block = columns(&mut tangent[i][j]);
+                for c in 0..3 {
+                    if first {
+                        block[c] = product(&by_row, &translation[c]);
+                        block[3 + c] = times(slope, &p[c]);
+                    } else {
+                        processor.add_products6(&mut block[c], &by_row, &translation[c]);
+                        processor.add_scaled6(&mut block[3 + c], slope, &p[c]);
+                    }
+                    processor.add_products6(&mut block[3 + c], &lower, &q[c]);
+                }
             }
         }
+        first = false;
     }
     Ok(())
+}
+
+/// Three columns of a block from its upper and its lower half.
+#[inline(always)]
+fn stacked(upper: &Columns, lower: &Columns) -> [[f64; NODE]; 3] {
+    let mut result = [[0.0; NODE]; 3];
+    for c in 0..3 {
+        let (u, l) = (&upper.0[c], &lower.0[c]);
+        result[c] = [u[0], u[1], u[2], l[0], l[1], l[2]];
+    }
+    result
+}
+
+/// The columns of a block.
+#[inline(always)]
+pub(crate) fn columns(block: &mut Matrix6<f64>) -> &mut [[f64; NODE]; NODE] {
+    &mut block.data.0
 }
 
 /// Adds a 3×3 matrix to a 6×6 block.
@@ -161,8 +217,9 @@ fn add(block: &mut Matrix6<f64>, row: usize, column: usize, part: &Matrix3<f64>)
 }
 
 /// s ← ŝ(q) + C ε′(q) δq: the stress iterate of the mixed iteration after a step, with the old q.
-#[inline]
+#[inline(always)]
 pub fn advance_stress<const N: usize, I: Interpolation<N>>(
+    processor: impl Processor,
     nodes: &[Pose; N],
     rule: &[Basis<N>],
     reference: &[ReferencePoint],
@@ -174,9 +231,10 @@ pub fn advance_stress<const N: usize, I: Interpolation<N>>(
     for (((basis, reference), constitutive), stress) in
         rule.iter().zip(reference).zip(constitutive).zip(stresses)
     {
-        let (gamma, kappa) = I::strain_increment(nodes, basis, increments)?;
-        stress.force = constitutive.force + stiffness.force.component_mul(&(gamma / reference.jacobian));
-        stress.moment = constitutive.moment + stiffness.moment.component_mul(&(kappa / reference.jacobian));
+        let (gamma, kappa) = I::strain_increment(processor, nodes, basis, increments)?;
+        let inverse = 1.0 / reference.jacobian;
+        stress.force = constitutive.force + stiffness.force.component_mul(&(vector(&gamma) * inverse));
+        stress.moment = constitutive.moment + stiffness.moment.component_mul(&(vector(&kappa) * inverse));
     }
     Ok(())
 }

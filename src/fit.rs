@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use crate::element::{ElementTangent, zero_tangent};
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose, PoseDerivative};
+use crate::lanes::Plain;
 use crate::linear_solver::{Chain, NODE};
 use crate::rod::Elements;
 use crate::rotation::{Twist, log_se3, right_jacobian_inverse_se3};
@@ -142,7 +143,7 @@ where
     let samples = Samples { elements, targets };
     let count = elements.count();
     let size = targets.iter().map(|pose| (pose.position - targets[0].position).norm()).fold(0.0, f64::max);
-    let mut chain = Chain::new(count, N - 1, &[]);
+    let mut chain = Chain::new(count, N - 1, &[], size / count as f64);
     let mut matrices = vec![zero_tangent::<N>(); count];
     let mut gradient = vec![0.0; NODE * state.poses().len()];
     let mut cost = samples.cost(state)?;
@@ -193,7 +194,7 @@ fn damped_solve<const N: usize>(
                 row[i][(k, k)] *= 1.0 + damping;
             }
         }
-        chain.add_element(step, &damped).ok()?;
+        chain.add_element(Plain, step, &damped).ok()?;
     }
     chain.factorize().ok()?;
     chain.solve(increment);

@@ -11,6 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
 use crate::lagrange::Basis;
+use crate::lanes::{Columns, Lanes, Processor, lanes, times, vector};
 use crate::rotation::{
     Twist, TwistMap, axial, exp_se3, log_se3, polar_rotation, right_jacobian_inverse_se3, right_jacobian_se3,
     skew,
@@ -45,17 +46,17 @@ pub struct Strain {
     pub kappa: Vector3<f64>,
 }
 
-/// Strains with their derivatives; κ̄ depends on rotations only.
+/// A, γ̄ and κ̄ at a point, as in [`Strain`], and how the translations of the nodes strain it there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrainDerivative<const N: usize> {
-    /// The strains themselves.
-    pub strain: Strain,
-    /// ∂γ̄/∂δr_j.
-    pub gamma_translation: [Matrix3<f64>; N],
-    /// ∂γ̄/∂δφ_j.
-    pub gamma_rotation: [Matrix3<f64>; N],
-    /// ∂κ̄/∂δφ_j.
-    pub kappa_rotation: [Matrix3<f64>; N],
+pub struct StrainLanes {
+    /// A_IK as interpolated.
+    pub rotation: Columns,
+    /// γ̄ [m].
+    pub gamma: Lanes,
+    /// κ̄ [rad].
+    pub kappa: Lanes,
+    /// G of ∂γ̄/∂δr_j = N_j′ G, the same for all nodes; κ̄ depends on rotations only.
+    pub gamma_translation: Columns,
 }
 
 /// Derivative of an interpolated pose: δr = Σ (r_r δr_j + r_φ δφ_j), δφ = Σ φ_φ δφ_j (body basis).
@@ -87,15 +88,46 @@ pub trait Interpolation<const N: usize> {
     /// The strains.
     fn strain(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Strain, HalfTurn>;
 
-    /// The strains and their derivatives.
-    fn strain_derivative(nodes: &[Pose; N], basis: &Basis<N>) -> Result<StrainDerivative<N>, HalfTurn>;
+    /// What the derivatives of the strains need at a point, computed once.
+    type Point;
+
+    /// The strains at a point, ready for their derivatives.
+    fn point(
+        processor: impl Processor,
+        nodes: &[Pose; N],
+        basis: &Basis<N>,
+    ) -> Result<(StrainLanes, Self::Point), HalfTurn>;
+
+    /// M ∂γ̄/∂δφ_j for every given M.
+    fn gamma_rotation<const K: usize>(
+        processor: impl Processor,
+        point: &Self::Point,
+        node: (usize, &Pose, &Basis<N>),
+        factors: [&Columns; K],
+    ) -> [Columns; K];
+
+    /// ∂κ̄/∂δφ_j.
+    fn kappa_rotation(
+        processor: impl Processor,
+        point: &Self::Point,
+        node: (usize, &Pose, &Basis<N>),
+    ) -> Columns;
+
+    /// ∂(A n)/∂δφ_j for a fixed n in the body basis.
+    fn turned(
+        processor: impl Processor,
+        point: &Self::Point,
+        node: (usize, &Pose, &Basis<N>),
+        n: &Lanes,
+    ) -> Columns;
 
     /// (δγ̄, δκ̄) for given nodal increments.
     fn strain_increment(
+        processor: impl Processor,
         nodes: &[Pose; N],
         basis: &Basis<N>,
         increments: &[Increment; N],
-    ) -> Result<(Vector3<f64>, Vector3<f64>), HalfTurn>;
+    ) -> Result<(Lanes, Lanes), HalfTurn>;
 
     /// What the rotation's derivative needs at a point, computed once: see [`Self::rotated`].
     type Turn;
@@ -113,6 +145,14 @@ pub trait Interpolation<const N: usize> {
 /// R12: positions and transformation matrices interpolated alike, eq. (6).
 #[derive(Clone, Copy, Debug)]
 pub struct R12;
+
+/// A, A′ and r′ at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct R12Point {
+    rotation: Columns,
+    slope: Columns,
+    tangent: Lanes,
+}
 
 /// Σ c_j A_j.
 #[inline]
@@ -177,52 +217,95 @@ impl<const N: usize> Interpolation<N> for R12 {
         Ok(Strain { rotation, gamma, kappa: axial(&rotation.tr_mul(&slope)) })
     }
 
-    /// δγ̄ = Aᵀ Σ N_j′ δr_j + Σ N_j (A_jᵀ r′)~ δφ_j,
-    /// δκ̄ = Σ ½ [N_j′ (tr D_j 1 − D_j) − N_j (tr B_j 1 − B_j)] δφ_j, D_j = A_jᵀ A, B_j = A_jᵀ A′.
-    #[inline]
-    fn strain_derivative(nodes: &[Pose; N], basis: &Basis<N>) -> Result<StrainDerivative<N>, HalfTurn> {
-        let rotation = combine(nodes, &basis.value);
-        let slope = combine(nodes, &basis.derivative);
-        let tangent = tangent_vector(nodes, basis);
-        let transposed = rotation.transpose();
-        let strain = Strain { rotation, gamma: transposed * tangent, kappa: axial(&(transposed * slope)) };
-        let mut result = StrainDerivative {
-            strain,
-            gamma_translation: [Matrix3::zeros(); N],
-            gamma_rotation: [Matrix3::zeros(); N],
-            kappa_rotation: [Matrix3::zeros(); N],
-        };
+    type Point = R12Point;
+
+    #[inline(always)]
+    fn point(
+        processor: impl Processor,
+        nodes: &[Pose; N],
+        basis: &Basis<N>,
+    ) -> Result<(StrainLanes, R12Point), HalfTurn> {
+        let (mut rotation, mut slope, mut tangent) = (Columns::default(), Columns::default(), [0.0; 4]);
         for j in 0..N {
-            let back = nodes[j].rotation.transpose();
-            result.gamma_translation[j] = transposed * basis.derivative[j];
-            result.gamma_rotation[j] = skew(&(back * tangent * basis.value[j]));
-            // Both products at once: N_j′ D_j − N_j B_j = A_jᵀ (N_j′ A − N_j A′).
-            result.kappa_rotation[j] =
-                half_trace_minus(&(back * (rotation * basis.derivative[j] - slope * basis.value[j])));
+            let node = Columns::from(&nodes[j].rotation);
+            rotation = rotation.plus_scaled(processor, basis.value[j], &node);
+            slope = slope.plus_scaled(processor, basis.derivative[j], &node);
+            let from_first = lanes(&(nodes[j].position - nodes[0].position));
+            processor.add_scaled4(&mut tangent, basis.derivative[j], &from_first);
         }
-        Ok(result)
+        let transposed = rotation.transpose();
+        let kappa = transposed.times(processor, &slope).axial();
+        let gamma = transposed.times_vector(processor, &tangent);
+        let strain = StrainLanes { rotation, gamma, kappa, gamma_translation: transposed };
+        Ok((strain, R12Point { rotation, slope, tangent }))
     }
 
-    #[inline]
+    /// N_j M (A_jᵀ r′)~, from δγ̄ = Aᵀ Σ N_j′ δr_j + Σ N_j (A_jᵀ r′)~ δφ_j.
+    #[inline(always)]
+    fn gamma_rotation<const K: usize>(
+        processor: impl Processor,
+        point: &R12Point,
+        (j, node, basis): (usize, &Pose, &Basis<N>),
+        factors: [&Columns; K],
+    ) -> [Columns; K] {
+        let lever = Columns::from(&node.rotation).transpose_times(processor, &point.tangent);
+        let lever = times(basis.value[j], &lever);
+        let mut products = [Columns::default(); K];
+        for (product, factor) in products.iter_mut().zip(factors) {
+            *product = factor.times_skew(processor, &lever);
+        }
+        products
+    }
+
+    /// From δκ̄ = Σ ½ [N_j′ (tr D_j 1 − D_j) − N_j (tr B_j 1 − B_j)] δφ_j, D_j = A_jᵀ A, B_j = A_jᵀ A′: both products
+    /// at once, N_j′ D_j − N_j B_j = A_jᵀ (N_j′ A − N_j A′).
+    #[inline(always)]
+    fn kappa_rotation(
+        processor: impl Processor,
+        point: &R12Point,
+        (j, node, basis): (usize, &Pose, &Basis<N>),
+    ) -> Columns {
+        let mixed = point.rotation.scaled(basis.derivative[j]);
+        let mixed = mixed.plus_scaled(processor, -basis.value[j], &point.slope);
+        Columns::from(&node.rotation).transpose().times(processor, &mixed).half_trace_minus()
+    }
+
+    /// δA n = −Σ N_j A_j ñ δφ_j.
+    #[inline(always)]
+    fn turned(
+        processor: impl Processor,
+        _: &R12Point,
+        (j, node, basis): (usize, &Pose, &Basis<N>),
+        n: &Lanes,
+    ) -> Columns {
+        Columns::from(&node.rotation).times_skew(processor, &times(-basis.value[j], n))
+    }
+
+    #[inline(always)]
     fn strain_increment(
+        processor: impl Processor,
         nodes: &[Pose; N],
         basis: &Basis<N>,
         increments: &[Increment; N],
-    ) -> Result<(Vector3<f64>, Vector3<f64>), HalfTurn> {
-        let rotation = combine(nodes, &basis.value);
-        let slope = combine(nodes, &basis.derivative);
-        let tangent = tangent_vector(nodes, basis);
-        let (mut turned, mut turned_slope, mut stretched) =
-            (Matrix3::zeros(), Matrix3::zeros(), Vector3::zeros());
+    ) -> Result<(Lanes, Lanes), HalfTurn> {
+        let (_, point) = <Self as Interpolation<N>>::point(processor, nodes, basis)?;
+        let (mut turned, mut turned_slope) = (Columns::default(), Columns::default());
+        let mut stretched = Lanes::default();
         for j in 0..N {
-            let change = nodes[j].rotation * skew(&increments[j].rotation);
-            turned += change * basis.value[j];
-            turned_slope += change * basis.derivative[j];
-            stretched += increments[j].translation * basis.derivative[j];
+            let node = Columns::from(&nodes[j].rotation);
+            let change = node.times_skew(processor, &lanes(&increments[j].rotation));
+            turned = turned.plus_scaled(processor, basis.value[j], &change);
+            turned_slope = turned_slope.plus_scaled(processor, basis.derivative[j], &change);
+            let from_first = lanes(&(increments[j].translation - increments[0].translation));
+            processor.add_scaled4(&mut stretched, basis.derivative[j], &from_first);
         }
-        let gamma = turned.tr_mul(&tangent) + rotation.tr_mul(&stretched);
-        let kappa = axial(&(turned.tr_mul(&slope) + rotation.tr_mul(&turned_slope)));
-        Ok((gamma, kappa))
+        let (turned, back) = (turned.transpose(), point.rotation.transpose());
+        let mut gamma = turned.times_vector(processor, &point.tangent);
+        for k in 0..3 {
+            processor.add_scaled4(&mut gamma, stretched[k], &back.0[k]);
+        }
+        let change = turned.times(processor, &point.slope).plus_product(processor, &back, &turned_slope);
+        Ok((gamma, change.axial()))
     }
 
     /// N_j A_j.
@@ -286,6 +369,13 @@ fn body_derivative(twist: &Twist, x: f64) -> [TwistMap; 2] {
     [TwistMap { diagonal: start.diagonal + back, coupling: start.coupling - back * skew(&position) }, end]
 }
 
+/// δθ by the nodes' increments, and the rotation at the point.
+#[derive(Clone, Copy, Debug)]
+pub struct Se3Point {
+    maps: [TwistMap; 2],
+    turn: Se3Turn,
+}
+
 /// A and ∂φ/∂δφ_j at a point of an SE(3) element.
 #[derive(Clone, Copy, Debug)]
 pub struct Se3Turn {
@@ -319,30 +409,62 @@ impl Interpolation<2> for Se3 {
         Ok(Strain { rotation, gamma: twist.translation, kappa: twist.rotation })
     }
 
-    fn strain_derivative(nodes: &[Pose; 2], basis: &Basis<2>) -> Result<StrainDerivative<2>, HalfTurn> {
-        let strain = Self::strain(nodes, basis)?;
-        let maps = twist_derivative(&Twist { translation: strain.gamma, rotation: strain.kappa });
-        Ok(StrainDerivative {
-            strain,
-            gamma_translation: std::array::from_fn(|j| maps[j].diagonal * nodes[j].rotation.transpose()),
-            gamma_rotation: maps.map(|map| map.coupling),
-            kappa_rotation: maps.map(|map| map.diagonal),
-        })
+    type Point = Se3Point;
+
+    /// The strains do not see where the nodes are, only how they lie to each other: ∂γ̄/∂δr_0 = −∂γ̄/∂δr_1.
+    #[inline(always)]
+    fn point(
+        _: impl Processor,
+        nodes: &[Pose; 2],
+        basis: &Basis<2>,
+    ) -> Result<(StrainLanes, Se3Point), HalfTurn> {
+        let twist = relative_twist(nodes)?;
+        let turn = Self::turn(nodes, basis)?;
+        let maps = twist_derivative(&twist);
+        let strain = StrainLanes {
+            rotation: Columns::from(&turn.rotation),
+            gamma: lanes(&twist.translation),
+            kappa: lanes(&twist.rotation),
+            gamma_translation: Columns::from(&(maps[1].diagonal * nodes[1].rotation.transpose())),
+        };
+        Ok((strain, Se3Point { maps, turn }))
+    }
+
+    #[inline(always)]
+    fn gamma_rotation<const K: usize>(
+        processor: impl Processor,
+        point: &Se3Point,
+        (j, ..): (usize, &Pose, &Basis<2>),
+        factors: [&Columns; K],
+    ) -> [Columns; K] {
+        let coupling = Columns::from(&point.maps[j].coupling);
+        factors.map(|factor| factor.times(processor, &coupling))
+    }
+
+    #[inline(always)]
+    fn kappa_rotation(_: impl Processor, point: &Se3Point, (j, ..): (usize, &Pose, &Basis<2>)) -> Columns {
+        Columns::from(&point.maps[j].diagonal)
+    }
+
+    #[inline(always)]
+    fn turned(_: impl Processor, point: &Se3Point, (j, ..): (usize, &Pose, &Basis<2>), n: &Lanes) -> Columns {
+        Columns::from(&Self::rotated(&point.turn, j, &vector(n)))
     }
 
     fn strain_increment(
+        _: impl Processor,
         nodes: &[Pose; 2],
-        basis: &Basis<2>,
+        _: &Basis<2>,
         increments: &[Increment; 2],
-    ) -> Result<(Vector3<f64>, Vector3<f64>), HalfTurn> {
-        let d = Self::strain_derivative(nodes, basis)?;
+    ) -> Result<(Lanes, Lanes), HalfTurn> {
+        let maps = twist_derivative(&relative_twist(nodes)?);
         let (mut gamma, mut kappa) = (Vector3::zeros(), Vector3::zeros());
-        for j in 0..2 {
-            gamma += d.gamma_translation[j] * increments[j].translation
-                + d.gamma_rotation[j] * increments[j].rotation;
-            kappa += d.kappa_rotation[j] * increments[j].rotation;
+        for (map, (node, increment)) in maps.iter().zip(nodes.iter().zip(increments)) {
+            gamma += map.diagonal * node.rotation.tr_mul(&increment.translation)
+                + map.coupling * increment.rotation;
+            kappa += map.diagonal * increment.rotation;
         }
-        Ok((gamma, kappa))
+        Ok((lanes(&gamma), lanes(&kappa)))
     }
 
     type Turn = Se3Turn;

@@ -107,6 +107,7 @@ pub mod inertia;
 pub mod interpolation;
 pub mod joint;
 pub mod lagrange;
+pub mod lanes;
 pub mod linear_solver;
 pub mod load;
 pub mod model;

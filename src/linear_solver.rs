@@ -33,6 +33,7 @@ mod tests {
 
     use super::*;
     use crate::element::ElementTangent;
+    use crate::lanes::Plain;
 
     /// Reproducible numbers in (−1, 1).
     struct Numbers(u64);
@@ -49,7 +50,7 @@ mod tests {
         let degree = N - 1;
         let size = NODE * (elements * degree + 1);
         let mut numbers = Numbers(N as u64);
-        let mut chain = Chain::new(elements, degree, kept);
+        let mut chain = Chain::new(elements, degree, kept, 1.0);
         let kept = chain.kept().to_vec();
         let mut coupled = Coupled::new(NODE * kept.len());
         let mut sparse = Sparse::<f64>::new(size);
@@ -68,10 +69,15 @@ mod tests {
                 }
             };
             for step in 0..elements {
-                let tangent: ElementTangent<N> =
+                let mut tangent: ElementTangent<N> =
                     std::array::from_fn(|_| std::array::from_fn(|_| Matrix6::from_fn(|_, _| numbers.next())));
+                if step % 2 == 0 {
+                    // Pivots of zero on the diagonal.
+                    let node = if kept == [0] { N - 1 } else { 0 };
+                    tangent[node][node] = Matrix6::from_fn(|r, c| if r + c == 5 { 1.0 } else { 0.0 });
+                }
                 let e = chain.element(step);
-                chain.add_element(step, &tangent).expect("regular");
+                chain.add_element(Plain, step, &tangent).expect("regular");
                 for (i, row) in tangent.iter().enumerate() {
                     for (j, block) in row.iter().enumerate() {
                         add(e * degree + i, e * degree + j, block);
@@ -128,7 +134,7 @@ mod tests {
         for kept in [&[0][..], &[16], &[0, 16], &[3, 8]] {
             agree::<9>(2, kept);
         }
-        assert_eq!(Chain::new(5, 2, &[3]).kept(), &[2, 3, 4]);
+        assert_eq!(Chain::new(5, 2, &[3], 1.0).kept(), &[2, 3, 4]);
     }
 
     #[test]
@@ -139,12 +145,12 @@ mod tests {
 
     #[test]
     fn singular_matrices_are_an_error() {
-        let mut chain = Chain::new(2, 1, &[]);
-        assert_eq!(chain.add_element(0, &[[Matrix6::<f64>::zeros(); 2]; 2]), Err(Singular));
+        let mut chain = Chain::new(2, 1, &[], 1.0);
+        assert_eq!(chain.add_element(Plain, 0, &[[Matrix6::<f64>::zeros(); 2]; 2]), Err(Singular));
         let identity = [[Matrix6::identity(), Matrix6::zeros()], [Matrix6::zeros(), Matrix6::zeros()]];
-        assert_eq!(chain.add_element(0, &identity).and_then(|()| chain.factorize()), Err(Singular));
+        assert_eq!(chain.add_element(Plain, 0, &identity).and_then(|()| chain.factorize()), Err(Singular));
         let overflow = [[Matrix6::from_element(f64::INFINITY); 2]; 2];
-        assert_eq!(chain.add_element(0, &overflow), Err(Singular));
+        assert_eq!(chain.add_element(Plain, 0, &overflow), Err(Singular));
         let mut sparse = Sparse::new(1);
         sparse.add(0, 0, f64::NAN);
         assert_eq!(sparse.factorize(), Err(Singular));

@@ -25,12 +25,16 @@ pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
     0.5 * Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
 }
 
-/// P divided by a power of two near its norm, so that no square over- or underflows.
+/// P, divided by a power of two near its norm where squares could over- or underflow.
 ///
 /// A power of two changes no digit, so A(P) and A(2ᵏ P) agree bit for bit.
 #[inline]
 fn scaled(p: &Vector4<f64>) -> Vector4<f64> {
-    let exponent = p.amax().log2().floor();
+    let size = p.amax();
+    if (1e-100..1e100).contains(&size) {
+        return *p;
+    }
+    let exponent = size.log2().floor();
     // 2^±1074 is not representable in one factor: take the power in two halves.
     let half = (-0.5 * exponent).floor();
     p * half.exp2() * (-exponent - half).exp2()
@@ -84,10 +88,21 @@ pub fn quaternion_product(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
 /// The unit quaternion of exp(φ̃): (cos ½φ, ½ φ sinc ½φ).
 #[inline]
 pub fn quaternion_exp(phi: &Vector3<f64>) -> Vector4<f64> {
-    let half = 0.5 * phi.norm();
-    let s = 0.5 * sinc(half);
-    Vector4::new(half.cos(), s * phi.x, s * phi.y, s * phi.z)
+    let square = 0.25 * phi.norm_squared();
+    let (cosine, sinc) = if square < SMALL_SQUARE {
+        const COSINE: [f64; 9] = inverse_factorials(0);
+        const SINC: [f64; 9] = inverse_factorials(1);
+        (polynomial(&COSINE, square), polynomial(&SINC, square))
+    } else {
+        let half = square.sqrt();
+        (half.cos(), sinc(half))
+    };
+    let s = 0.5 * sinc;
+    Vector4::new(cosine, s * phi.x, s * phi.y, s * phi.z)
 }
+
+/// Below it what the series leave out, x⁹/18! and x⁹/19! of the square x, is less than ε/100.
+const SMALL_SQUARE: f64 = 0.8;
 
 /// P / ‖P‖ for any non-zero finite P.
 #[inline]

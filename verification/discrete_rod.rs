@@ -5,11 +5,13 @@ use cosserat::element::{
 };
 use cosserat::interpolation::{HalfTurn, Interpolation, Pose};
 use cosserat::lagrange::{Basis, basis_at_rule};
+use cosserat::lanes::Plain;
 use cosserat::quadrature::gauss_legendre;
 use cosserat::scene::NodeSpacing;
 use nalgebra::{DMatrix, Vector3};
 
 use crate::states::places;
+use crate::strains::strain_derivative;
 
 /// Force and moment rows of every node with the largest sums of absolute contributions.
 #[derive(Clone, Debug)]
@@ -75,6 +77,7 @@ impl<const N: usize> DiscreteRod<N> {
             let nodes = self.nodes(poses, e);
             let mut rows = ElementForce::default();
             internal_force::<N, I>(
+                Plain,
                 &nodes,
                 &self.rule,
                 self.points(e),
@@ -104,7 +107,7 @@ impl<const N: usize> DiscreteRod<N> {
         for e in 0..self.elements {
             let nodes = self.nodes(poses, e);
             for (basis, reference) in self.rule.iter().zip(self.points(e)) {
-                let d = I::strain_derivative(&nodes, basis)?;
+                let d = strain_derivative::<N, I>(&nodes, basis)?;
                 let stress = self.stiffness.stress(&d.strain.gamma, &d.strain.kappa, reference);
                 for i in 0..N {
                     let node = e * (N - 1) + i;
@@ -126,9 +129,25 @@ impl<const N: usize> DiscreteRod<N> {
             let nodes = self.nodes(poses, e);
             let points = self.points(e);
             let mut unused = ElementForce::default();
-            internal_force::<N, I>(&nodes, &self.rule, points, &self.stiffness, &mut stresses, &mut unused)?;
+            internal_force::<N, I>(
+                Plain,
+                &nodes,
+                &self.rule,
+                points,
+                &self.stiffness,
+                &mut stresses,
+                &mut unused,
+            )?;
             let mut tangent = zero_tangent::<N>();
-            internal_tangent::<N, I>(&nodes, &self.rule, points, &self.stiffness, &stresses, &mut tangent)?;
+            internal_tangent::<N, I>(
+                Plain,
+                &nodes,
+                &self.rule,
+                points,
+                &self.stiffness,
+                &stresses,
+                &mut tangent,
+            )?;
             for (i, row) in tangent.iter().enumerate() {
                 for (j, block) in row.iter().enumerate() {
                     let place = [i, j].map(|node| 6 * (e * (N - 1) + node));

@@ -18,6 +18,7 @@ mod references;
 mod report;
 mod states;
 mod steps;
+mod strains;
 mod tip;
 
 use std::collections::BTreeSet;

@@ -27,7 +27,7 @@ impl Chains {
         let chain = |rod: &RodModel| {
             let own = joined().filter(|node| rod.range.contains(node));
             let kept: Vec<usize> = own.map(|node| node - rod.range.start).collect();
-            Chain::new(rod.elements, rod.degree, &kept)
+            Chain::new(rod.elements, rod.degree, &kept, rod.element_length)
         };
         let chains: Vec<Chain> = model.rods.iter().map(chain).collect();
         let of_rods = model.rods.iter().zip(&chains);

@@ -1,90 +1,34 @@
 //! Frontal elimination of one rod.
 
+mod blocks;
+mod pivoted;
+
+use std::ops::Range;
+
 use nalgebra::Matrix6;
 
-use super::{NODE, Singular, dot};
+use super::{NODE, Singular};
 use crate::element::ElementTangent;
-
-/// Gaussian elimination of the first `count` unknowns of a square row-major matrix, with pivots among the first
-/// `count` rows: leaves the multipliers below the diagonal, U on and above it, and the Schur complement.
-#[inline]
-fn eliminate<const W: usize>(a: &mut [[f64; W]], count: usize, pivots: &mut [u8]) -> Result<(), Singular> {
-    for k in 0..count {
-        let mut pivot = k;
-        for i in k + 1..count {
-            if a[i][k].abs() > a[pivot][k].abs() {
-                pivot = i;
-            }
-        }
-        pivots[k] = pivot as u8;
-        a.swap(k, pivot);
-        let (head, tail) = a.split_at_mut(k + 1);
-        let row = &head[k];
-        let inverse = 1.0 / row[k];
-        if !(inverse.is_finite() && inverse != 0.0) {
-            return Err(Singular);
-        }
-        for other in tail {
-            let factor = other[k] * inverse;
-            other[k] = factor;
-            for j in k + 1..W {
-                other[j] -= factor * row[j];
-            }
-        }
-    }
-    Ok(())
-}
-
-/// b ← L⁻¹ b for the eliminated unknowns, and what is left of b for the others.
-#[inline]
-fn forward<const W: usize>(a: &[[f64; W]], count: usize, pivots: &[u8], b: &mut [f64]) {
-    for (k, &pivot) in pivots[..count].iter().enumerate() {
-        b.swap(k, usize::from(pivot));
-    }
-    for i in 1..W {
-        let known = count.min(i);
-        let (before, rest) = b.split_at_mut(i);
-        rest[0] -= dot(&a[i][..known], &before[..known]);
-    }
-}
-
-/// b ← U⁻¹ b for the eliminated unknowns, from the last, the others being known.
-#[inline]
-fn backward<const W: usize>(a: &[[f64; W]], count: usize, b: &mut [f64]) {
-    for i in (0..count).rev() {
-        let (before, after) = b.split_at_mut(i + 1);
-        before[i] = (before[i] - dot(&a[i][i + 1..], after)) / a[i][i];
-    }
-}
+use crate::lanes::{Plain, Processor, widest};
+use pivoted::Pivoted;
 
 /// Most nodes of a front: those of an element of degree 8 and one that is carried along.
 const MOST: usize = 10;
 
-/// Calls `$function::<W>` on the rows of a front of `$nodes` nodes, 1 to 10.
-macro_rules! with_front {
-    ($nodes:expr, $rows:expr, $as_chunks:ident, $function:ident, $($argument:expr),*) => {
-        match $nodes {
-            1 => $function($rows.$as_chunks::<NODE>().0, $($argument),*),
-            2 => $function($rows.$as_chunks::<{ 2 * NODE }>().0, $($argument),*),
-            3 => $function($rows.$as_chunks::<{ 3 * NODE }>().0, $($argument),*),
-            4 => $function($rows.$as_chunks::<{ 4 * NODE }>().0, $($argument),*),
-            5 => $function($rows.$as_chunks::<{ 5 * NODE }>().0, $($argument),*),
-            6 => $function($rows.$as_chunks::<{ 6 * NODE }>().0, $($argument),*),
-            7 => $function($rows.$as_chunks::<{ 7 * NODE }>().0, $($argument),*),
-            8 => $function($rows.$as_chunks::<{ 8 * NODE }>().0, $($argument),*),
-            9 => $function($rows.$as_chunks::<{ 9 * NODE }>().0, $($argument),*),
-            _ => $function($rows.$as_chunks::<{ 10 * NODE }>().0, $($argument),*),
-        }
-    };
-}
+/// No pivoting.
+const NONE: u32 = u32::MAX;
 
 /// The matrix of one element and what comes with it, in the order of elimination.
 #[derive(Clone, Debug, PartialEq)]
 struct Front {
-    /// Where its rows start among the values, and its pivots.
-    values: usize,
-    pivots: usize,
-    /// The nodes of the rod in the order of the front: first those that are eliminated here, then the others.
+    /// Where its blocks start, row by row.
+    blocks: usize,
+    /// Place of its factors if it was eliminated with pivoting, or [`NONE`].
+    pivoted: u32,
+    /// Whether it is the element with what the one before left over its first node, in the element's own order.
+    plain: bool,
+    /// The nodes of the rod in the order of the front: first those that are eliminated here, then the others; the
+    /// other way round in a chain that goes backwards.
     nodes: [u32; MOST],
     width: u8,
     eliminated: u8,
@@ -100,20 +44,25 @@ struct Front {
 /// The factorised tangent of one rod.
 ///
 /// Elements are eliminated in order. The matrix of an element receives what is left over its first node from the
-/// elements before; its nodes but the last are eliminated with row pivoting among them, and what is left over its
-/// last node goes on to the next. That is the work of condensing the interior nodes and of eliminating the
-/// block-tridiagonal rest, in one sweep. Nodes that others need (a joint's) are *kept*: they are carried along from
-/// front to front until the next kept node, and what is left over them is the rod's share in the coupled system.
+/// elements before; its nodes but the last are eliminated, and what is left over its last node goes on to the next.
+/// That is the work of condensing the interior nodes and of eliminating the block-tridiagonal rest, in one sweep.
+/// Blocks are eliminated as they come; a front whose multipliers grow large is eliminated again with row pivoting.
+/// Nodes that others need (a joint's) are *kept*: they are carried along from front to front until the next kept
+/// node, and what is left over them is the rod's share in the coupled system.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    /// Whether elements are taken from the last to the first: from the end that is not kept.
+    /// Whether elements and their nodes are taken from the last to the first: from the end that is not kept.
     backwards: bool,
     elements: usize,
+    /// Makes force and moment rows comparable [m].
+    length: f64,
     fronts: Vec<Front>,
-    values: Vec<f64>,
-    pivots: Vec<u8>,
-    /// What the last front left over, row-major over one or two nodes.
-    left: [f64; 4 * NODE * NODE],
+    blocks: Vec<Matrix6<f64>>,
+    /// The fronts that needed pivoting, and memory for more.
+    pivoted: Vec<Pivoted>,
+    pivoted_count: usize,
+    /// What the last front left over, over one or two nodes, row by row.
+    left: [Matrix6<f64>; 4],
     kept: Vec<usize>,
     /// What is left over the kept nodes, by pairs of them, in a fixed order.
     remainder: Vec<(usize, usize, Matrix6<f64>)>,
@@ -122,8 +71,8 @@ pub struct Chain {
 
 impl Chain {
     /// For a rod of `elements` elements of degree `degree`, 1 to 8, that keeps some of its nodes. A kept node inside
-    /// an element makes it keep the element's ends, too: see [`Self::kept`].
-    pub fn new(elements: usize, degree: usize, kept: &[usize]) -> Self {
+    /// an element makes it keep the element's ends, too: see [`Self::kept`]. `length` is that of an element [m].
+    pub fn new(elements: usize, degree: usize, kept: &[usize], length: f64) -> Self {
         let last = elements * degree;
         let mut kept: Vec<usize> = kept
             .iter()
@@ -138,15 +87,17 @@ impl Chain {
         let mut chain = Self {
             backwards,
             elements,
+            length,
             fronts: Vec::with_capacity(elements + 1),
-            values: Vec::new(),
-            pivots: Vec::new(),
-            left: [0.0; 4 * NODE * NODE],
+            blocks: Vec::new(),
+            pivoted: Vec::new(),
+            pivoted_count: 0,
+            left: [Matrix6::zeros(); 4],
             kept,
             remainder: Vec::new(),
             filled: 0,
         };
-        let (mut size, mut pivots, mut carried) = (0, 0, None);
+        let (mut size, mut carried) = (0, None);
         // What the front before leaves over: at most the carried node and its last.
         let mut incoming: Vec<usize> = Vec::new();
         for step in 0..=elements {
@@ -165,18 +116,24 @@ impl Chain {
             let eliminated = nodes.len();
             nodes.extend(carried);
             nodes.extend((0..count).filter(|&i| !goes(i)).map(node_at));
+            if backwards {
+                nodes.reverse();
+            }
             let place = |node: usize| nodes.iter().position(|&other| other == node).unwrap_or(0) as u8;
             let mut front = Front {
-                values: size,
-                pivots,
+                blocks: size,
+                pivoted: NONE,
+                plain: false,
                 nodes: [0; MOST],
                 width: nodes.len() as u8,
                 eliminated: eliminated as u8,
                 slots: [0; MOST],
                 incoming: [0; 2],
                 incoming_count: incoming.len() as u8,
-                leaves: nodes[eliminated..].iter().all(|&node| is_kept(node)),
+                leaves: false,
             };
+            let rest = &nodes[chain.rest(&front)];
+            front.leaves = rest.iter().all(|&node| is_kept(node));
             for (slot, &node) in front.nodes.iter_mut().zip(&nodes) {
                 *slot = node as u32;
             }
@@ -187,22 +144,34 @@ impl Chain {
             for (slot, &node) in front.incoming.iter_mut().zip(&incoming) {
                 *slot = place(node);
             }
-            size += (nodes.len() * NODE).pow(2);
-            pivots += eliminated * NODE;
+            let in_order = front.slots[..count].iter().enumerate().all(|(i, &slot)| i == usize::from(slot));
+            front.plain = in_order && nodes.len() == count && incoming.len() < 2;
+            size += nodes.len().pow(2);
             if front.leaves {
-                let rest = &nodes[eliminated..];
                 let pairs = rest.iter().flat_map(|&a| rest.iter().map(move |&b| (a, b)));
                 chain.remainder.extend(pairs.map(|(a, b)| (a, b, Matrix6::zeros())));
                 (incoming, carried) = (Vec::new(), None);
             } else {
-                incoming = nodes[eliminated..].to_vec();
+                incoming = rest.to_vec();
                 carried = incoming.iter().copied().find(|&node| is_kept(node));
             }
             chain.fronts.push(front);
         }
-        chain.values = vec![0.0; size];
-        chain.pivots = vec![0; pivots];
+        chain.blocks = vec![Matrix6::zeros(); size];
         chain
+    }
+
+    /// The places of a front that are left over.
+    #[inline(always)]
+    fn rest(&self, front: &Front) -> Range<usize> {
+        let (width, count) = (usize::from(front.width), usize::from(front.eliminated));
+        if self.backwards { 0..width - count } else { count..width }
+    }
+
+    /// The place of a front that is eliminated as the k-th.
+    #[inline(always)]
+    fn eliminated(&self, front: &Front, k: usize) -> usize {
+        if self.backwards { usize::from(front.width) - 1 - k } else { k }
     }
 
     /// The kept nodes, ascending.
@@ -216,78 +185,148 @@ impl Chain {
         if self.backwards { self.elements - 1 - step } else { step }
     }
 
+    /// Where the tangent of the element of a step may be written for [`Self::eliminate_written`]; `None` where only
+    /// [`Self::add_element`] will do.
+    #[inline(always)]
+    pub fn place<const N: usize>(&mut self, step: usize) -> Option<&mut ElementTangent<N>> {
+        let front = &self.fronts[step];
+        if !front.plain {
+            return None;
+        }
+        self.blocks[front.blocks..].as_chunks_mut::<N>().0.first_chunk_mut()
+    }
+
+    /// Eliminates the element whose tangent was written to its place; false if it must be added again with
+    /// [`Self::add_element`], because its elimination needs pivoting.
+    #[inline(always)]
+    pub fn eliminate_written(&mut self, processor: impl Processor, step: usize) -> bool {
+        self.start(step);
+        self.receive(step);
+        let eliminated = self.eliminate_blocks(processor, step);
+        if eliminated {
+            self.pass_on(step);
+        }
+        eliminated
+    }
+
     /// Adds the tangent of the element of a step and eliminates what can be eliminated; in order, from step 0.
+    #[inline(always)]
     pub fn add_element<const N: usize>(
         &mut self,
+        processor: impl Processor,
         step: usize,
         tangent: &ElementTangent<N>,
     ) -> Result<(), Singular> {
+        self.start(step);
+        self.eliminate(processor, step, tangent)
+    }
+
+    fn start(&mut self, step: usize) {
         if step == 0 {
             self.filled = 0;
+            self.pivoted_count = 0;
         }
-        let front = &self.fronts[step];
-        let width = NODE * usize::from(front.width);
-        let rows = &mut self.values[front.values..][..width * width];
-        if usize::from(front.width) > N {
-            rows.fill(0.0);
-        }
-        for (i, blocks) in tangent.iter().enumerate() {
-            for (j, block) in blocks.iter().enumerate() {
-                let (row, column) = (usize::from(front.slots[i]), usize::from(front.slots[j]));
-                put(&mut rows[row * NODE * width + column * NODE..], width, block);
-            }
-        }
-        self.eliminate_front(step)
     }
 
     /// Eliminates the last node, after all elements.
     pub fn factorize(&mut self) -> Result<(), Singular> {
-        let Some(front) = self.fronts.get(self.elements) else { return Ok(()) };
-        let width = NODE * usize::from(front.width);
-        self.values[front.values..][..width * width].fill(0.0);
-        self.eliminate_front(self.elements)
+        if self.fronts.len() > self.elements {
+            self.eliminate::<0>(Plain, self.elements, &[])
+        } else {
+            Ok(())
+        }
     }
 
-    fn eliminate_front(&mut self, step: usize) -> Result<(), Singular> {
-        let front = &self.fronts[step];
-        let width = NODE * usize::from(front.width);
-        let rows = &mut self.values[front.values..][..width * width];
-        let incoming = &front.incoming[..usize::from(front.incoming_count)];
-        let side = NODE * incoming.len();
-        for (a, &row) in incoming.iter().enumerate() {
-            for (b, &column) in incoming.iter().enumerate() {
-                for i in 0..NODE {
-                    let start = (usize::from(row) * NODE + i) * width + usize::from(column) * NODE;
-                    let from = (a * NODE + i) * side + b * NODE;
-                    for (x, left) in rows[start..][..NODE].iter_mut().zip(&self.left[from..][..NODE]) {
-                        *x += left;
-                    }
-                }
-            }
+    #[inline(always)]
+    fn eliminate<const N: usize>(
+        &mut self,
+        processor: impl Processor,
+        step: usize,
+        tangent: &ElementTangent<N>,
+    ) -> Result<(), Singular> {
+        self.fill(step, tangent);
+        if !self.eliminate_blocks(processor, step) {
+            self.fill(step, tangent);
+            self.eliminate_pivoted(step)?;
         }
-        let count = NODE * usize::from(front.eliminated);
-        let pivots = &mut self.pivots[front.pivots..][..count];
-        with_front!(front.width, rows, as_chunks_mut, eliminate, count, pivots)?;
-        let rest = width - count;
-        if front.leaves {
-            for a in (0..rest).step_by(NODE) {
-                for b in (0..rest).step_by(NODE) {
-                    let block = &mut self.remainder[self.filled].2;
-                    for i in 0..NODE {
-                        for j in 0..NODE {
-                            block[(i, j)] = rows[(count + a + i) * width + count + b + j];
-                        }
-                    }
-                    self.filled += 1;
-                }
-            }
-        } else {
-            for (row, left) in rows[count * width..].chunks_exact(width).zip(self.left.chunks_exact_mut(rest))
-            {
-                left.copy_from_slice(&row[count..]);
-            }
-        }
+        self.pass_on(step);
         Ok(())
+    }
+
+    /// Without pivoting; false if that does not do.
+    #[inline(always)]
+    fn eliminate_blocks(&mut self, processor: impl Processor, step: usize) -> bool {
+        let front = &mut self.fronts[step];
+        let (width, count) = (usize::from(front.width), usize::from(front.eliminated));
+        front.pivoted = NONE;
+        let blocks = &mut self.blocks[front.blocks..][..width * width];
+        blocks::eliminate(processor, blocks, (width, count, self.backwards), self.length)
+    }
+
+    /// The matrix of a front: the element's and what was left over.
+    #[inline(always)]
+    fn fill<const N: usize>(&mut self, step: usize, tangent: &ElementTangent<N>) {
+        let front = &self.fronts[step];
+        let width = usize::from(front.width);
+        let blocks = &mut self.blocks[front.blocks..][..width * width];
+        if width > N {
+            blocks.fill(Matrix6::zeros());
+        }
+        for (row, &i) in tangent.iter().zip(&front.slots) {
+            let blocks = &mut blocks[usize::from(i) * width..][..width];
+            for (block, &j) in row.iter().zip(&front.slots) {
+                blocks[usize::from(j)] = *block;
+            }
+        }
+        self.receive(step);
+    }
+
+    /// Adds what was left over.
+    #[inline(always)]
+    fn receive(&mut self, step: usize) {
+        let front = &self.fronts[step];
+        let width = usize::from(front.width);
+        let blocks = &mut self.blocks[front.blocks..][..width * width];
+        let incoming = &front.incoming[..usize::from(front.incoming_count)];
+        let places = incoming.iter().flat_map(|&i| incoming.iter().map(move |&j| (i, j)));
+        for ((i, j), left) in places.zip(&self.left) {
+            blocks[usize::from(i) * width + usize::from(j)] += left;
+        }
+    }
+
+    /// Eliminates a front that is filled with row pivoting.
+    #[cold]
+    fn eliminate_pivoted(&mut self, step: usize) -> Result<(), Singular> {
+        let front = &mut self.fronts[step];
+        let (width, count) = (usize::from(front.width), usize::from(front.eliminated));
+        if self.pivoted.len() == self.pivoted_count {
+            self.pivoted.push(Pivoted::default());
+        }
+        front.pivoted = self.pivoted_count as u32;
+        let pivoted = &mut self.pivoted[self.pivoted_count];
+        self.pivoted_count += 1;
+        pivoted.factorize(&self.blocks[front.blocks..][..width * width], width, count, self.backwards)
+    }
+
+    /// Hands on what a front that is eliminated has left over.
+    #[inline(always)]
+    fn pass_on(&mut self, step: usize) {
+        let front = &self.fronts[step];
+        let (width, rest) = (usize::from(front.width), self.rest(front));
+        let blocks = &self.blocks[front.blocks..][..width * width];
+        let places = rest.clone().flat_map(|i| rest.clone().map(move |j| (i, j)));
+        for (k, (i, j)) in places.enumerate() {
+            let block = match self.pivoted.get(front.pivoted as usize) {
+                Some(pivoted) => pivoted.block(i, j),
+                None => blocks[i * width + j],
+            };
+            if front.leaves {
+                self.remainder[self.filled].2 = block;
+                self.filled += 1;
+            } else {
+                self.left[k] = block;
+            }
+        }
     }
 
     /// What is left over the kept nodes after the factorisation: blocks by rows and columns, to be summed.
@@ -298,32 +337,69 @@ impl Chain {
     /// The first half of the solution: eliminates the chain's own unknowns from b (six entries a node, in order
     /// along the rod) and leaves in the entries of the kept nodes the right side of their system.
     pub fn forward(&self, b: &mut [f64]) {
-        let mut x = [0.0; MOST * NODE];
+        let b = b.as_chunks_mut::<NODE>().0;
+        widest!(processor => self.forward_blocks(processor, b));
+    }
+
+    #[inline(always)]
+    fn forward_blocks(&self, processor: impl Processor, b: &mut [[f64; NODE]]) {
         for front in &self.fronts {
-            let (nodes, count) = gather(front, b, &mut x);
-            let width = NODE * nodes.len();
-            let rows = &self.values[front.values..][..width * width];
-            let pivots = &self.pivots[front.pivots..][..count];
-            with_front!(nodes.len(), rows, as_chunks, forward, count, pivots, &mut x[..width]);
-            for (&node, x) in nodes.iter().zip(x.chunks_exact(NODE)) {
-                b[NODE * node as usize..][..NODE].copy_from_slice(x);
+            let (nodes, blocks) = self.parts(front);
+            if let Some(pivoted) = self.pivoted.get(front.pivoted as usize) {
+                let mut x = self.gather(nodes, b);
+                pivoted.forward(&mut x.as_flattened_mut()[..NODE * nodes.len()]);
+                self.scatter(nodes, nodes.len(), &x, b);
+                continue;
+            }
+            let width = nodes.len();
+            for k in 0..usize::from(front.eliminated) {
+                let pivot = self.eliminated(front, k);
+                let mut y = b[nodes[pivot] as usize];
+                blocks::solve_lower(processor, &blocks[pivot * width + pivot], &mut y);
+                b[nodes[pivot] as usize] = y;
+                for i in if self.backwards { 0..pivot } else { pivot + 1..width } {
+                    let (node, block) = (nodes[i] as usize, &blocks[i * width + pivot]);
+                    blocks::subtract_times(processor, &mut b[node], block, &y);
+                }
             }
         }
     }
 
     /// The second half: with the kept nodes' entries solved, the others.
     pub fn backward(&self, b: &mut [f64]) {
-        let mut x = [0.0; MOST * NODE];
+        let b = b.as_chunks_mut::<NODE>().0;
+        widest!(processor => self.backward_blocks(processor, b));
+    }
+
+    #[inline(always)]
+    fn backward_blocks(&self, processor: impl Processor, b: &mut [[f64; NODE]]) {
         for front in self.fronts.iter().rev() {
-            let (nodes, count) = gather(front, b, &mut x);
-            let width = NODE * nodes.len();
-            let rows = &self.values[front.values..][..width * width];
-            with_front!(nodes.len(), rows, as_chunks, backward, count, &mut x[..width]);
-            let solved = &nodes[..usize::from(front.eliminated)];
-            for (&node, x) in solved.iter().zip(x.chunks_exact(NODE)) {
-                b[NODE * node as usize..][..NODE].copy_from_slice(x);
+            let (nodes, blocks) = self.parts(front);
+            let (width, count) = (nodes.len(), usize::from(front.eliminated));
+            if let Some(pivoted) = self.pivoted.get(front.pivoted as usize) {
+                let mut x = self.gather(nodes, b);
+                pivoted.backward(&mut x.as_flattened_mut()[..NODE * nodes.len()]);
+                self.scatter(nodes, count, &x, b);
+                continue;
+            }
+            for k in (0..count).rev() {
+                let pivot = self.eliminated(front, k);
+                let row = &blocks[pivot * width..][..width];
+                let mut y = b[nodes[pivot] as usize];
+                for j in if self.backwards { 0..pivot } else { pivot + 1..width } {
+                    blocks::subtract_times(processor, &mut y, &row[j], &b[nodes[j] as usize]);
+                }
+                blocks::solve_upper(processor, &row[pivot], &mut y);
+                b[nodes[pivot] as usize] = y;
             }
         }
+    }
+
+    /// The nodes and blocks of a front.
+    #[inline(always)]
+    fn parts<'a>(&'a self, front: &'a Front) -> (&'a [u32], &'a [Matrix6<f64>]) {
+        let width = usize::from(front.width);
+        (&front.nodes[..width], &self.blocks[front.blocks..][..width * width])
     }
 
     /// b ← K⁻¹ b for a chain that keeps no node.
@@ -331,24 +407,22 @@ impl Chain {
         self.forward(b);
         self.backward(b);
     }
-}
 
-/// A front's nodes and number of eliminated unknowns; copies its entries of b to x.
-#[inline]
-fn gather<'a>(front: &'a Front, b: &[f64], x: &mut [f64; MOST * NODE]) -> (&'a [u32], usize) {
-    let nodes = &front.nodes[..usize::from(front.width)];
-    for (&node, x) in nodes.iter().zip(x.chunks_exact_mut(NODE)) {
-        x.copy_from_slice(&b[NODE * node as usize..][..NODE]);
+    /// The entries of some nodes in the order of elimination.
+    fn gather(&self, nodes: &[u32], b: &[[f64; NODE]]) -> [[f64; NODE]; MOST] {
+        let mut x = [[0.0; NODE]; MOST];
+        for (i, x) in x.iter_mut().enumerate().take(nodes.len()) {
+            let place = if self.backwards { nodes.len() - 1 - i } else { i };
+            *x = b[nodes[place] as usize];
+        }
+        x
     }
-    (nodes, NODE * usize::from(front.eliminated))
-}
 
-/// Writes a 6×6 block into a row-major matrix.
-#[inline]
-fn put(rows: &mut [f64], width: usize, block: &Matrix6<f64>) {
-    for i in 0..NODE {
-        for j in 0..NODE {
-            rows[i * width + j] = block[(i, j)];
+    /// Puts the first `count` of them back.
+    fn scatter(&self, nodes: &[u32], count: usize, x: &[[f64; NODE]; MOST], b: &mut [[f64; NODE]]) {
+        for (i, x) in x.iter().enumerate().take(count) {
+            let place = if self.backwards { nodes.len() - 1 - i } else { i };
+            b[nodes[place] as usize] = *x;
         }
     }
 }

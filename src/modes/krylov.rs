@@ -196,7 +196,9 @@ fn project(
         };
         let error = (norm(&residual) + norm(&residual_imaginary)).sqrt();
         let size = (norm(&real) + norm(&imaginary)).sqrt();
-        worst = worst.max(error / (value.norm() * size));
+        // NaN stays.
+        let relative = error / (value.norm() * size);
+        worst = if relative > worst || relative.is_nan() { relative } else { worst };
         // A complex pair spans a plane: the real part for the first of the two, the imaginary one for the second.
         pairs.push(Pair { value, vector: if value.im < 0.0 { imaginary } else { real } });
     }

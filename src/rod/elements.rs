@@ -19,6 +19,7 @@ use crate::fit;
 use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
 use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
+use crate::lanes::{Processor, widest};
 use crate::quadrature::gauss_legendre;
 use crate::scene::{NodeSpacing, QuadratureKind};
 use crate::state::State;
@@ -150,6 +151,145 @@ where
             support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owner);
         }
     }
+
+    /// [`RodElements::assemble_tangent`].
+    #[inline(always)]
+    fn assemble_tangent_by(
+        &self,
+        processor: impl Processor,
+        state: &State,
+        range: Range<usize>,
+        properties: &RodProperties,
+        stresses: &[Stress],
+        applied: &Applied,
+        target: &mut Target,
+    ) -> Result<(), TangentError> {
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
+        let poses = &state.poses()[range.clone()];
+        let turning = applied.line_loaded && applied.line_load.turns();
+        let mut scratch = zero_tangent::<N>();
+        // An element is written where it is eliminated, or built once more if that takes pivoting.
+        let (mut step, mut in_place) = (0, true);
+        while step < self.elements {
+            let (e, place) = match target {
+                Target::Chain(chain) if in_place => (chain.element(step), chain.place(step)),
+                Target::Chain(chain) => (chain.element(step), None),
+                Target::Quaternions { .. } | Target::Blocks(_) => (step, None),
+            };
+            let written = place.is_some();
+            let tangent = place.unwrap_or(&mut scratch);
+            let nodes = self.of(e, poses);
+            let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
+            internal_tangent::<N, I>(
+                processor,
+                nodes,
+                &self.rule,
+                points,
+                &properties.stiffness,
+                stresses,
+                tangent,
+            )
+            .map_err(|_| TangentError::HalfTurn(e))?;
+            if turning {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_tangent::<N, I>(nodes, &self.full_rule, jacobians, applied.line_load, tangent)
+                    .map_err(|_| TangentError::HalfTurn(e))?;
+            }
+            self.add_loads(e, applied, tangent);
+            if let Some(step) = &applied.step {
+                self.add_step(e, properties, step, tangent);
+            }
+            self.hold(e, poses, applied, tangent);
+            match target {
+                Target::Chain(chain) if written => {
+                    in_place = chain.eliminate_written(processor, step);
+                    if !in_place {
+                        continue;
+                    }
+                }
+                Target::Chain(chain) => {
+                    chain.add_element(processor, step, &scratch)?;
+                    in_place = true;
+                }
+                Target::Quaternions { system, first_row } => {
+                    let first = e * (N - 1);
+                    let quaternions = &state.quaternions()[range.clone()];
+                    add_quaternion_element(system, *first_row + QUATERNION_NODE * first, &scratch, |i| {
+                        &quaternions[first + i]
+                    });
+                }
+                Target::Blocks(blocks) => blocks.extend(scratch.iter().flatten()),
+            }
+            step += 1;
+        }
+        Ok(())
+    }
+
+    /// [`RodElements::add_forces`].
+    #[inline(always)]
+    fn add_forces_by(
+        &self,
+        processor: impl Processor,
+        poses: &[Pose],
+        properties: &RodProperties,
+        line_load: Option<&LineLoad>,
+        constitutive: &mut [Stress],
+        first: usize,
+        forces: &mut NodalForces,
+    ) -> Result<(), usize> {
+        let (q, fq) = (self.rule.len(), self.full_rule.len());
+        for e in 0..self.elements {
+            let nodes = self.of(e, poses);
+            let mut element = ElementForce::default();
+            let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
+            internal_force::<N, I>(
+                processor,
+                nodes,
+                &self.rule,
+                points,
+                &properties.stiffness,
+                stresses,
+                &mut element,
+            )
+            .map_err(|_| e)?;
+            if let Some(line_load) = line_load {
+                let jacobians = &properties.full_jacobians[e * fq..][..fq];
+                line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
+                    .map_err(|_| e)?;
+            }
+            forces.scatter(first + e * (N - 1), &element);
+        }
+        Ok(())
+    }
+
+    /// [`RodElements::advance_stresses`].
+    #[inline(always)]
+    fn advance_stresses_by(
+        &self,
+        processor: impl Processor,
+        poses: &[Pose],
+        properties: &RodProperties,
+        increments: &[Increment],
+        constitutive: &[Stress],
+        stresses: &mut [Stress],
+    ) -> Result<(), usize> {
+        let q = self.rule.len();
+        for e in 0..self.elements {
+            let points = e * q..(e + 1) * q;
+            advance_stress::<N, I>(
+                processor,
+                self.of(e, poses),
+                &self.rule,
+                &properties.points[points.clone()],
+                &properties.stiffness,
+                self.of(e, increments),
+                &constitutive[points.clone()],
+                &mut stresses[points],
+            )
+            .map_err(|_| e)?;
+        }
+        Ok(())
+    }
 }
 
 impl<const N: usize, I> RodElements for Elements<N, I>
@@ -207,21 +347,7 @@ where
         first: usize,
         forces: &mut NodalForces,
     ) -> Result<(), usize> {
-        let (q, fq) = (self.rule.len(), self.full_rule.len());
-        for e in 0..self.elements {
-            let nodes = self.of(e, poses);
-            let mut element = ElementForce::default();
-            let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
-            internal_force::<N, I>(nodes, &self.rule, points, &properties.stiffness, stresses, &mut element)
-                .map_err(|_| e)?;
-            if let Some(line_load) = line_load {
-                let jacobians = &properties.full_jacobians[e * fq..][..fq];
-                line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
-                    .map_err(|_| e)?;
-            }
-            forces.scatter(first + e * (N - 1), &element);
-        }
-        Ok(())
+        widest!(processor => self.add_forces_by(processor, poses, properties, line_load, constitutive, first, forces))
     }
 
     fn add_inertia(
@@ -335,49 +461,7 @@ where
         applied: &Applied,
         target: &mut Target,
     ) -> Result<(), TangentError> {
-        let (q, fq) = (self.rule.len(), self.full_rule.len());
-        let poses = &state.poses()[range.clone()];
-        let turning = applied.line_loaded && applied.line_load.turns();
-        for step in 0..self.elements {
-            let e = match target {
-                Target::Chain(chain) => chain.element(step),
-                Target::Quaternions { .. } | Target::Blocks(_) => step,
-            };
-            let nodes = self.of(e, poses);
-            let mut tangent = zero_tangent::<N>();
-            let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
-            internal_tangent::<N, I>(
-                nodes,
-                &self.rule,
-                points,
-                &properties.stiffness,
-                stresses,
-                &mut tangent,
-            )
-            .map_err(|_| TangentError::HalfTurn(e))?;
-            if turning {
-                let jacobians = &properties.full_jacobians[e * fq..][..fq];
-                line_load_tangent::<N, I>(nodes, &self.full_rule, jacobians, applied.line_load, &mut tangent)
-                    .map_err(|_| TangentError::HalfTurn(e))?;
-            }
-            self.add_loads(e, applied, &mut tangent);
-            if let Some(step) = &applied.step {
-                self.add_step(e, properties, step, &mut tangent);
-            }
-            self.hold(e, poses, applied, &mut tangent);
-            match target {
-                Target::Chain(chain) => chain.add_element(step, &tangent)?,
-                Target::Quaternions { system, first_row } => {
-                    let first = e * (N - 1);
-                    let quaternions = &state.quaternions()[range.clone()];
-                    add_quaternion_element(system, *first_row + QUATERNION_NODE * first, &tangent, |i| {
-                        &quaternions[first + i]
-                    });
-                }
-                Target::Blocks(blocks) => blocks.extend(tangent.iter().flatten()),
-            }
-        }
-        Ok(())
+        widest!(processor => self.assemble_tangent_by(processor, state, range, properties, stresses, applied, target))
     }
 
     fn advance_stresses(
@@ -388,21 +472,7 @@ where
         constitutive: &[Stress],
         stresses: &mut [Stress],
     ) -> Result<(), usize> {
-        let q = self.rule.len();
-        for e in 0..self.elements {
-            let points = e * q..(e + 1) * q;
-            advance_stress::<N, I>(
-                self.of(e, poses),
-                &self.rule,
-                &properties.points[points.clone()],
-                &properties.stiffness,
-                self.of(e, increments),
-                &constitutive[points.clone()],
-                &mut stresses[points],
-            )
-            .map_err(|_| e)?;
-        }
-        Ok(())
+        widest!(processor => self.advance_stresses_by(processor, poses, properties, increments, constitutive, stresses))
     }
 
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn> {

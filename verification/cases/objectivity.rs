@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 use cosserat::element::{ElementForce, Stress, internal_force, internal_tangent, zero_tangent};
 use cosserat::interpolation::{Interpolation, Pose, R12, Se3};
 use cosserat::lagrange::basis_at_rule;
+use cosserat::lanes::Plain;
 use cosserat::quadrature::gauss_legendre;
 use cosserat::rotation::{normalized, rotation_matrix};
 use cosserat::scene::NodeSpacing;
@@ -46,9 +47,9 @@ fn response<const N: usize, I: Interpolation<N>>(
     let reference: Vec<_> = rule.iter().map(|_| reference_point(&mut random)).collect();
     let mut stresses = vec![Stress::default(); rule.len()];
     let mut force = ElementForce::default();
-    internal_force::<N, I>(poses, &rule, &reference, &STIFFNESS, &mut stresses, &mut force)?;
+    internal_force::<N, I>(Plain, poses, &rule, &reference, &STIFFNESS, &mut stresses, &mut force)?;
     let mut tangent = zero_tangent::<N>();
-    internal_tangent::<N, I>(poses, &rule, &reference, &STIFFNESS, &stresses, &mut tangent)?;
+    internal_tangent::<N, I>(Plain, poses, &rule, &reference, &STIFFNESS, &stresses, &mut tangent)?;
     let mut strains = Vec::new();
     for basis in &rule {
         let strain = I::strain(poses, basis)?;

@@ -6,6 +6,7 @@ use cosserat::element::{
 };
 use cosserat::interpolation::{Increment, Interpolation, R12, Se3};
 use cosserat::lagrange::basis_at_rule;
+use cosserat::lanes::Plain;
 use cosserat::quadrature::gauss_legendre;
 use cosserat::scene::NodeSpacing;
 use nalgebra::Vector3;
@@ -199,13 +200,13 @@ fn compare_internal<const N: usize, I: Interpolation<N>>(
 
     let mut constitutive = vec![Stress::default(); rule.len()];
     let mut force = ElementForce::default();
-    internal_force::<N, I>(&poses, &rule, &reference, &STIFFNESS, &mut constitutive, &mut force)?;
+    internal_force::<N, I>(Plain, &poses, &rule, &reference, &STIFFNESS, &mut constitutive, &mut force)?;
     let still = points_of(&[Increment::default(); N]);
     compare_rows(&mut errors.rows, &force, &exact(&still, &stresses(&still, &reference)));
 
     // s = ŝ(q): the true derivative.
     let mut tangent = zero_tangent::<N>();
-    internal_tangent::<N, I>(&poses, &rule, &reference, &STIFFNESS, &constitutive, &mut tangent)?;
+    internal_tangent::<N, I>(Plain, &poses, &rule, &reference, &STIFFNESS, &constitutive, &mut tangent)?;
     compare_blocks(&mut errors.plain, &tangent, |increments| {
         let points = points_of(&increments);
         exact(&points, &stresses(&points, &reference))
@@ -215,7 +216,7 @@ fn compare_internal<const N: usize, I: Interpolation<N>>(
     let mut stress = || Stress { force: random.vector(), moment: random.vector() };
     let mut iterate: Vec<Stress> = rule.iter().map(|_| stress()).collect();
     let mut tangent = zero_tangent::<N>();
-    internal_tangent::<N, I>(&poses, &rule, &reference, &STIFFNESS, &iterate, &mut tangent)?;
+    internal_tangent::<N, I>(Plain, &poses, &rule, &reference, &STIFFNESS, &iterate, &mut tangent)?;
     compare_blocks(&mut errors.mixed, &tangent, |increments| {
         let points = points_of(&increments);
         let from = |s: &Vector3<f64>, law: &Vector3<Dual64>| s.zip_map(law, |s, law| Dual64::new(s, law.eps));
@@ -228,7 +229,16 @@ fn compare_internal<const N: usize, I: Interpolation<N>>(
     });
 
     let increments = std::array::from_fn(|_| random.increment());
-    advance_stress::<N, I>(&poses, &rule, &reference, &STIFFNESS, &increments, &constitutive, &mut iterate)?;
+    advance_stress::<N, I>(
+        Plain,
+        &poses,
+        &rule,
+        &reference,
+        &STIFFNESS,
+        &increments,
+        &constitutive,
+        &mut iterate,
+    )?;
     for ((n, m), s) in stresses(&points_of(&increments), &reference).iter().zip(&iterate) {
         for (ours, law) in [(&s.force, n), (&s.moment, m)] {
             let scale = law.map(|x| x.eps).norm() + STIFFNESS.force.x;

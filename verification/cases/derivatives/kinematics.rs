@@ -3,6 +3,7 @@
 use cosserat::fit::{twist_from, twist_jacobian};
 use cosserat::interpolation::{Interpolation, Pose, R12, Se3};
 use cosserat::lagrange::basis;
+use cosserat::lanes::{Plain, vector};
 use cosserat::scene::NodeSpacing;
 use nalgebra::{Matrix3, Vector3};
 use num_dual::Dual64;
@@ -11,6 +12,7 @@ use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Ansatz, Frame, axial, polar, relative_twist};
 use crate::states::{ANGLES, ElementState, Generator, Worst, places, unit_increment};
+use crate::strains::strain_derivative;
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
@@ -84,7 +86,7 @@ fn strains<const N: usize, I: Interpolation<N>>(
             let basis = basis(&places, x, 1.0);
             // Σ|N′| |A| of both sums.
             let scale: f64 = basis.derivative.iter().map(|slope| slope.abs()).sum();
-            let d = I::strain_derivative(&poses, &basis)?;
+            let d = strain_derivative::<N, I>(&poses, &basis)?;
             let columns = |part: fn(&formulas::Point<Dual64>) -> Vector3<Dual64>, first: usize, j: usize| {
                 Matrix3::from_columns(&[0, 1, 2].map(|k| {
                     let nodes = state.moved(&unit_increment::<N>(j, first + k));
@@ -105,7 +107,8 @@ fn strains<const N: usize, I: Interpolation<N>>(
                 value.compare_against(s.kappa.iter().copied(), exact.kappa.iter().map(|x| x.re), scale);
                 value.compare_against(s.rotation.iter().copied(), exact.rotation.iter().map(|x| x.re), scale);
             }
-            let (gamma, kappa) = I::strain_increment(&poses, &basis, &increments)?;
+            let (gamma, kappa) = I::strain_increment(Plain, &poses, &basis, &increments)?;
+            let (gamma, kappa) = (vector(&gamma), vector(&kappa));
             direction.compare_against(gamma.iter().copied(), exact.gamma.iter().map(|x| x.eps), scale);
             direction.compare_against(kappa.iter().copied(), exact.kappa.iter().map(|x| x.eps), scale);
         }

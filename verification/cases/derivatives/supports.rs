@@ -7,6 +7,7 @@ use cosserat::element::{
 use cosserat::interpolation::{Increment, Pose, R12};
 use cosserat::joint::Support;
 use cosserat::lagrange::basis_at_rule;
+use cosserat::lanes::Plain;
 use cosserat::quadrature::gauss_legendre;
 use cosserat::rotation::rotation_matrix;
 use cosserat::scene::{JointKind, NodeSpacing};
@@ -102,8 +103,8 @@ impl HeldElement {
         let (poses, reference) = (self.state.poses(), &self.reference);
         let mut stress = vec![Stress::default(); rule.len()];
         let (mut force, mut tangent) = (ElementForce::default(), zero_tangent::<N>());
-        internal_force::<N, R12>(&poses, &rule, reference, &STIFFNESS, &mut stress, &mut force)?;
-        internal_tangent::<N, R12>(&poses, &rule, reference, &STIFFNESS, &stress, &mut tangent)?;
+        internal_force::<N, R12>(Plain, &poses, &rule, reference, &STIFFNESS, &mut stress, &mut force)?;
+        internal_tangent::<N, R12>(Plain, &poses, &rule, reference, &STIFFNESS, &stress, &mut tangent)?;
         Ok((force, tangent))
     }
 

@@ -12,6 +12,7 @@ use nalgebra::{Matrix3, Vector4};
 use super::{MATRIX, Quantity, Read, compare, condition, entries, matrix, smallness, vector};
 use crate::case::{Case, Checks, Outcome};
 use crate::references::Row;
+use crate::strains::strain_derivative;
 
 const SOURCE: &str = "Pinocchio 4.1.0 and mpmath, scripts/references/pinocchio_motions.py";
 
@@ -210,7 +211,7 @@ fn free_flyer_tangents(checks: &mut Checks) -> Outcome {
         let rows = table.select(&[("argument", ["0", "1"][argument])])?;
         compare(checks, rows, "range", quantities, |row| {
             let nodes = nodes(row)?;
-            let d = Se3::strain_derivative(&nodes, &basis(&[0.0, 1.0], 0.5, 1.0))?;
+            let d = strain_derivative::<2, Se3>(&nodes, &basis(&[0.0, 1.0], 0.5, 1.0))?;
             let (diagonal, coupling) = (matrix(row, DIAGONAL)?, matrix(row, COUPLING)?);
             let moved = d.gamma_translation[argument] * nodes[argument].rotation;
             Ok((
