@@ -217,6 +217,7 @@ fn add(block: &mut Matrix6<f64>, row: usize, column: usize, part: &Matrix3<f64>)
 }
 
 /// s ← ŝ(q) + C ε′(q) δq: the stress iterate of the mixed iteration after a step, with the old q.
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub fn advance_stress<const N: usize, I: Interpolation<N>>(
     processor: impl Processor,

@@ -153,6 +153,7 @@ where
     }
 
     /// [`RodElements::assemble_tangent`].
+    #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     fn assemble_tangent_by(
         &self,
@@ -226,6 +227,7 @@ where
     }
 
     /// [`RodElements::add_forces`].
+    #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     fn add_forces_by(
         &self,

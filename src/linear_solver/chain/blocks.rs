@@ -68,9 +68,7 @@ fn factorize_column<const K: usize>(processor: impl Processor, d: &mut Block, gr
         let entry = d[column][K];
         processor.add_scaled6(&mut d[column], -entry, &multipliers);
     }
-    for row in K + 1..NODE {
-        d[K][row] = multipliers[row];
-    }
+    d[K][K + 1..].copy_from_slice(&multipliers[K + 1..]);
     d[K][K] = inverse;
     growth.add(processor, K, &multipliers);
 }
