@@ -222,8 +222,15 @@ impl<'a> Path<'a> {
                 reason,
             })?;
         }
-        let stresses = self.work.rods.iter().map(|rod| rod.stresses.clone()).collect();
-        self.before = Some(std::mem::replace(&mut self.last, Point { place, state, stresses }));
+        if self.extrapolate {
+            let stresses = self.work.rods.iter().map(|rod| rod.stresses.clone()).collect();
+            self.before = Some(std::mem::replace(&mut self.last, Point { place, state, stresses }));
+        } else {
+            (self.last.place, self.last.state) = (place, state);
+            for (saved, rod) in self.last.stresses.iter_mut().zip(&self.work.rods) {
+                saved.copy_from_slice(&rod.stresses);
+            }
+        }
         self.statistics.increments += 1;
         self.statistics.most_iterations = self.statistics.most_iterations.max(iterations);
         self.statistics.residual = self.statistics.residual.max(residual);

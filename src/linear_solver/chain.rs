@@ -121,7 +121,7 @@ impl Chain {
             }
             let place = |node: usize| nodes.iter().position(|&other| other == node).unwrap_or(0) as u8;
             let mut front = Front {
-                blocks: size,
+                blocks: 0,
                 pivoted: NONE,
                 plain: false,
                 nodes: [0; MOST],
@@ -146,6 +146,11 @@ impl Chain {
             }
             let in_order = front.slots[..count].iter().enumerate().all(|(i, &slot)| i == usize::from(slot));
             front.plain = in_order && nodes.len() == count && incoming.len() < 2;
+            // What is left over its last node is handed on, so that the next one may write there.
+            if front.plain && chain.fronts.last().is_some_and(|before| before.plain) {
+                size -= 1;
+            }
+            front.blocks = size;
             size += nodes.len().pow(2);
             if front.leaves {
                 let pairs = rest.iter().flat_map(|&a| rest.iter().map(move |&b| (a, b)));
@@ -156,6 +161,11 @@ impl Chain {
                 carried = incoming.iter().copied().find(|&node| is_kept(node));
             }
             chain.fronts.push(front);
+        }
+        if backwards {
+            for front in &mut chain.fronts {
+                front.blocks = size - front.blocks - usize::from(front.width).pow(2);
+            }
         }
         chain.blocks = vec![Matrix6::zeros(); size];
         chain
