@@ -31,14 +31,14 @@ pub struct Velocity {
 /// δφ = T((1, y)) (0, δy) = 2 (1 − ỹ) δy/(1 + |y|²) = b Y δω     Y = (1 − ỹ)/(1 + |y|²)     T of eq. (10)
 /// (1 − ỹ)(1 + ỹ + y yᵀ) = 1 + y yᵀ − ỹ² = 1 + |y|²              ỹ y = 0, ỹ² = y yᵀ − |y|² 1
 /// ```
-#[inline]
+#[inline(always)]
 pub fn spin_from_turn(omega: &Vector3<f64>, b: f64) -> Matrix3<f64> {
     let y = omega * (0.5 * b);
     Matrix3::identity() + skew(&y) + y * y.transpose()
 }
 
 /// ω × (I ω) for I = diag(I₁, I₂, I₃).
-#[inline]
+#[inline(always)]
 pub fn gyroscopic_moment(inertia: &Vector3<f64>, omega: &Vector3<f64>) -> Vector3<f64> {
     omega.cross(&inertia.component_mul(omega))
 }
@@ -52,7 +52,7 @@ pub fn gyroscopic_moment(inertia: &Vector3<f64>, omega: &Vector3<f64>) -> Vector
 ///     ⎜ (I₁ − I₃) ω₃      0        (I₁ − I₃) ω₁ ⎟
 ///     ⎝ (I₂ − I₁) ω₂ (I₂ − I₁) ω₁       0       ⎠
 /// ```
-#[inline]
+#[inline(always)]
 pub fn gyroscopic_tangent(inertia: &Vector3<f64>, omega: &Vector3<f64>) -> Matrix3<f64> {
     let (x, y, z) = (inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x);
     Matrix3::new(0.0, x * omega.z, x * omega.y, y * omega.z, 0.0, y * omega.x, z * omega.y, z * omega.x, 0.0)
@@ -74,7 +74,7 @@ pub fn mass_coefficients<const N: usize>(rule: &[Basis<N>], jacobians: &[f64]) -
 }
 
 /// ω(x) = Σ N_j ω_j, eq. (9).
-#[inline]
+#[inline(always)]
 fn spin<const N: usize>(basis: &Basis<N>, velocities: &[Velocity; N]) -> Vector3<f64> {
     let mut sum = velocities[0].rotation * basis.value[0];
     for j in 1..N {
@@ -88,7 +88,7 @@ fn spin<const N: usize>(basis: &Basis<N>, velocities: &[Velocity; N]) -> Vector3
 ///
 /// The gyroscopic force stands on the side of M u̇: the sign printed in eq. (15) would not conserve the angular
 /// momentum of a free rod.
-#[inline]
+#[inline(always)]
 pub fn inertia_force<const N: usize>(
     rule: &[Basis<N>],
     jacobians: &[f64],
@@ -126,7 +126,7 @@ pub fn inertia_force<const N: usize>(
 /// The step ties accelerations and velocities to the new pose: δu̇ = δu/b, δv_j = δr_j/b, δω_j = Y_j⁻¹ δφ_j/b (see
 /// [`spin_from_turn`]); `b` is in seconds. The matrix under the integral is linear in ω (see [`gyroscopic_tangent`]),
 /// so that the vector ∫ N_i N_j ω J dx of a pair of nodes is all that has to be summed over the points.
-#[inline]
+#[inline(always)]
 pub fn inertia_tangent<const N: usize>(
     rule: &[Basis<N>],
     jacobians: &[f64],

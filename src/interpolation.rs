@@ -82,6 +82,9 @@ pub trait Interpolation<const N: usize> {
     /// Position and rotation, the latter projected to the nearest rotation where it is not one.
     fn pose(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Pose, HalfTurn>;
 
+    /// The position alone.
+    fn position(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Vector3<f64>, HalfTurn>;
+
     /// The pose and its derivative.
     fn pose_derivative(nodes: &[Pose; N], basis: &Basis<N>) -> Result<PoseDerivative<N>, HalfTurn>;
 
@@ -182,12 +185,16 @@ pub(crate) fn half_trace_minus(m: &Matrix3<f64>) -> Matrix3<f64> {
 
 impl<const N: usize> Interpolation<N> for R12 {
     fn pose(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Pose, HalfTurn> {
+        let rotation = polar_rotation(&combine(nodes, &basis.value)).ok_or(HalfTurn)?;
+        Ok(Pose { position: Self::position(nodes, basis)?, rotation })
+    }
+
+    fn position(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Vector3<f64>, HalfTurn> {
         let mut position = nodes[0].position;
         for j in 1..N {
             position += (nodes[j].position - nodes[0].position) * basis.value[j];
         }
-        let rotation = polar_rotation(&combine(nodes, &basis.value)).ok_or(HalfTurn)?;
-        Ok(Pose { position, rotation })
+        Ok(position)
     }
 
     /// With A = R U: j⁻¹(Skw(Rᵀ δA)) = ½ ((tr U) 1 − U) δφ, and Rᵀ δA = Σ N_j C_j δφ̃_j with C_j = Rᵀ A_j.
@@ -388,6 +395,10 @@ impl Interpolation<2> for Se3 {
         let (rotation, position) = exp_se3(&scaled(&relative_twist(nodes)?, basis.x));
         let start = &nodes[0];
         Ok(Pose { position: start.position + start.rotation * position, rotation: start.rotation * rotation })
+    }
+
+    fn position(nodes: &[Pose; 2], basis: &Basis<2>) -> Result<Vector3<f64>, HalfTurn> {
+        Ok(Self::pose(nodes, basis)?.position)
     }
 
     fn pose_derivative(nodes: &[Pose; 2], basis: &Basis<2>) -> Result<PoseDerivative<2>, HalfTurn> {

@@ -3,6 +3,9 @@
 //! A kernel is an `#[inline(always)]` function of a [`Processor`]; [`widest!`] compiles its call twice, once for AVX2
 //! and FMA, and chooses when it runs. The two differ by rounding; one machine always takes the same.
 
+#[cfg(target_arch = "x86_64")]
+use std::sync::LazyLock;
+
 use nalgebra::{Matrix3, Vector3};
 
 /// Evaluates a call of kernels with `$processor` for the widest vectors there are.
@@ -10,7 +13,7 @@ macro_rules! widest {
     ($processor:ident => $call:expr) => {{
         #[cfg(target_arch = "x86_64")]
         {
-            match pulp::x86::V3::try_new() {
+            match crate::lanes::vectors() {
                 Some($processor) => pulp::Simd::vectorize(
                     $processor,
                     #[inline(always)]
@@ -30,6 +33,19 @@ macro_rules! widest {
     }};
 }
 pub(crate) use widest;
+
+/// AVX2 and FMA if there are any, and if the environment does not hold `COSSERAT_PLAIN`: then results agree bit for
+/// bit between machines with and without, and tools can run the program that do not know all of their instructions.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+pub(crate) fn vectors() -> Option<pulp::x86::V3> {
+    static VECTORS: LazyLock<Option<pulp::x86::V3>> =
+        LazyLock::new(|| match std::env::var_os("COSSERAT_PLAIN") {
+            None => pulp::x86::V3::try_new(),
+            Some(_) => None,
+        });
+    *VECTORS
+}
 
 /// What multiplies and adds.
 pub trait Processor: Copy {

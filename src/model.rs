@@ -251,6 +251,12 @@ impl Model {
         Ok(Pose { position: rod.origin + pose.position + pose.rotation * offset, rotation: pose.rotation })
     }
 
+    /// The position of a rod at ξ ∈ [0, 1], inertial: far cheaper than the pose, which projects the rotation.
+    pub fn position(&self, state: &State, rod: usize, xi: f64) -> Result<Vector3<f64>, HalfTurn> {
+        let rod = &self.rods[rod];
+        Ok(rod.origin + rod.kernel.position(&state.poses()[rod.range.clone()], xi)?)
+    }
+
     /// The pose of a body's centre of mass with a lever in its basis, inertial.
     pub fn body_pose(&self, state: &State, body: usize, offset: &Vector3<f64>) -> Pose {
         let body = &self.bodies[body];

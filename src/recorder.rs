@@ -123,8 +123,7 @@ fn reaction(
 fn shape(model: &Model, parameter: f64, state: &State) -> Shape {
     let rods = (0..model.rods.len()).map(|rod| {
         let points = (0..=SHAPE_POINTS).map(|k| k as f64 / SHAPE_POINTS as f64);
-        let pose = |xi| model.pose(state, rod, xi, &Vector3::zeros());
-        points.filter_map(|xi| Some(pose(xi).ok()?.position.into())).collect()
+        points.filter_map(|xi| Some(model.position(state, rod, xi).ok()?.into())).collect()
     });
     Shape { parameter, rods: rods.collect() }
 }

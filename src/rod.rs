@@ -242,6 +242,9 @@ pub trait RodElements: Debug + Send + Sync {
     /// The pose at ξ ∈ [0, 1].
     fn pose(&self, poses: &[Pose], xi: f64) -> Result<Pose, HalfTurn>;
 
+    /// The position at ξ ∈ [0, 1].
+    fn position(&self, poses: &[Pose], xi: f64) -> Result<Vector3<f64>, HalfTurn>;
+
     /// At ξ ∈ [0, 1] the rotation, and δr (inertial) and δφ (body basis) for given increments of the nodes.
     fn pose_increment(
         &self,

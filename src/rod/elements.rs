@@ -116,6 +116,7 @@ where
     }
 
     /// K → b² K + (M + b D) diag(1, Y⁻¹); without inertia b² K.
+    #[inline(always)]
     fn add_step(
         &self,
         e: usize,
@@ -292,6 +293,33 @@ where
         }
         Ok(())
     }
+
+    /// [`RodElements::add_inertia`].
+    #[inline(always)]
+    fn add_inertia_by(
+        &self,
+        properties: &RodProperties,
+        velocities: &[Velocity],
+        accelerations: &[Velocity],
+        first: usize,
+        forces: &mut NodalForces,
+    ) {
+        let Some(inertia) = &properties.inertia else { return };
+        for e in 0..self.elements {
+            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let mut element = ElementForce::default();
+            inertia_force::<N>(
+                &self.full_rule,
+                jacobians,
+                mass,
+                &inertia.section,
+                self.of(e, velocities),
+                self.of(e, accelerations),
+                &mut element,
+            );
+            forces.scatter(first + e * (N - 1), &element);
+        }
+    }
 }
 
 impl<const N: usize, I> RodElements for Elements<N, I>
@@ -360,21 +388,7 @@ where
         first: usize,
         forces: &mut NodalForces,
     ) {
-        let Some(inertia) = &properties.inertia else { return };
-        for e in 0..self.elements {
-            let (jacobians, mass) = self.mass_of(e, properties, inertia);
-            let mut element = ElementForce::default();
-            inertia_force::<N>(
-                &self.full_rule,
-                jacobians,
-                mass,
-                &inertia.section,
-                self.of(e, velocities),
-                self.of(e, accelerations),
-                &mut element,
-            );
-            forces.scatter(first + e * (N - 1), &element);
-        }
+        widest!(_processor => self.add_inertia_by(properties, velocities, accelerations, first, forces));
     }
 
     fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor) {
@@ -484,6 +498,11 @@ where
             Some(node) => Ok(poses[node]),
             None => I::pose(self.of(e, poses), &self.basis_at(x)),
         }
+    }
+
+    fn position(&self, poses: &[Pose], xi: f64) -> Result<Vector3<f64>, HalfTurn> {
+        let (e, x) = self.locate(xi);
+        I::position(self.of(e, poses), &self.basis_at(x))
     }
 
     fn pose_increment(
