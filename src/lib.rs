@@ -123,6 +123,7 @@ pub mod section;
 pub mod solution;
 pub mod state;
 pub mod statics;
+pub mod study;
 
 pub use error::{Error, SceneError};
 pub use model::Model;

@@ -1,5 +1,10 @@
 //! The program `cosserat`: reads a scene, calls the library, prints and writes.
 
+/// The commands that are more than a few lines.
+mod commands {
+    pub mod study;
+}
+
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -48,7 +53,13 @@ enum Command {
         #[command(flatten)]
         scene: SceneArguments,
     },
-    /// Speed against accuracy on a scene (not available yet).
+    /// Show what speed and accuracy the settings of a scene give, and name the cheapest
+    ///
+    /// Runs the scene with many meshes, degrees, increments or time steps (what the table [study] lists, or a
+    /// selection about the scene's own settings) and holds every run against one that is far finer. The folder
+    /// then holds study.csv, one row a run, study.svg, and study.json, from which the same study goes on after it
+    /// was interrupted.
+    #[command(verbatim_doc_comment)]
     Study {
         #[command(flatten)]
         scene: SceneArguments,
@@ -73,12 +84,12 @@ struct SceneArguments {
 
 /// Why the program did not end well.
 enum Failure {
-    /// The command asks for what is not there yet.
-    Unavailable(&'static str),
     /// The scene is wrong, or a file could not be read or written.
     Library(Error),
     /// The solver stopped early; the results are written.
     Stopped(SolveError),
+    /// The solver stopped early on the way to the reference of a study.
+    Reference(SolveError),
 }
 
 impl From<Error> for Failure {
@@ -90,19 +101,19 @@ impl From<Error> for Failure {
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Unavailable(_) | Self::Library(Error::Scene(_)) => 2,
-            Self::Stopped(_) => 3,
+            Self::Library(Error::Scene(_)) => 2,
+            Self::Stopped(_) | Self::Reference(_) => 3,
             Self::Library(Error::File { .. }) => 4,
         }
     }
 
     fn message(&self) -> String {
         match self {
-            Self::Unavailable(command) => {
-                format!("the command `{command}` is not available yet; expected `run` or `check`")
-            }
             Self::Library(error) => error.to_string(),
             Self::Stopped(error) => error.to_string(),
+            Self::Reference(error) => {
+                format!("the reference that all runs would be held against was not reached: {error}")
+            }
         }
     }
 }
@@ -112,7 +123,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run { scene, out, quiet } => run(&scene, out, quiet),
         Command::Check { scene } => check(&scene),
-        Command::Study { .. } => Err(Failure::Unavailable("study")),
+        Command::Study { scene, out, quiet } => commands::study::study(&scene, &out, quiet),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -124,19 +135,19 @@ fn main() -> ExitCode {
 }
 
 /// Reads the scene and builds the model; errors of both carry their place in the file.
-fn load(arguments: &SceneArguments) -> Result<(Scene, Model), Error> {
+fn load(arguments: &SceneArguments) -> Result<(SceneFile, Scene, Model), Error> {
     let file = SceneFile::read(&arguments.path, &arguments.overrides)?;
     let scene = file.scene()?;
     let model = Model::new(&scene).map_err(|error| match error {
         Error::Scene(error) => Error::Scene(file.locate(error)),
         other => other,
     })?;
-    Ok((scene, model))
+    Ok((file, scene, model))
 }
 
 fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Failure> {
     let start = Instant::now();
-    let (scene, model) = load(arguments)?;
+    let (_, scene, model) = load(arguments)?;
     refuse_overwriting(&arguments.path, &out)?;
     output::prepare(&out)?;
     let setup_seconds = start.elapsed().as_secs_f64();
@@ -206,7 +217,7 @@ fn refuse_overwriting(scene: &Path, out: &Path) -> Result<(), Error> {
 }
 
 fn check(arguments: &SceneArguments) -> Result<(), Failure> {
-    let (scene, model) = load(arguments)?;
+    let (_, scene, model) = load(arguments)?;
     list_rods(&model);
     list_bodies(&model);
     say(format_args!(

@@ -9,6 +9,7 @@ mod body;
 mod part;
 mod read;
 mod rod;
+mod study;
 mod validate;
 
 pub use analysis::{Analysis, Coordinates, Dynamics, Method, Modes, NewtonKind, Statics};
@@ -19,6 +20,7 @@ pub use rod::{
     Curve, CurveShape, InterpolationKind, Material, NodeSpacing, QuadratureKind, Reference, Rod, Section,
     Theory,
 };
+pub use study::{Increments, Study, Tolerance};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +56,9 @@ pub struct Scene {
     /// What the plot shows beside the solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plot: Option<Plot>,
+    /// What a study of speed against accuracy tries; nothing else looks at it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub study: Option<Study>,
 }
 
 impl Scene {

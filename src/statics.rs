@@ -19,14 +19,36 @@ pub fn solve(
     equilibrium(model, options, progress).map(|(solution, _)| solution)
 }
 
-/// The same with the state at load factor 1.
+/// The same with an increment that ends at each of the milestones, ascending load factors in (0, 1], so that the
+/// paths of different meshes and settings can be compared row by row.
+///
+/// Equal increments stay as they are: they meet those of the milestones that are multiples of 1/increments.
+pub fn solve_through(
+    model: &Model,
+    options: &Statics,
+    milestones: &[f64],
+    progress: &mut dyn FnMut(f64, &Statistics),
+) -> Result<Solution, Box<SolveFailure>> {
+    trace(model, options, milestones, progress).map(|(solution, _)| solution)
+}
+
+/// The solution with the state at load factor 1.
 pub(crate) fn equilibrium(
     model: &Model,
     options: &Statics,
     progress: &mut dyn FnMut(f64, &Statistics),
 ) -> Result<(Solution, State), Box<SolveFailure>> {
+    trace(model, options, &[], progress)
+}
+
+fn trace(
+    model: &Model,
+    options: &Statics,
+    milestones: &[f64],
+    progress: &mut dyn FnMut(f64, &Statistics),
+) -> Result<(Solution, State), Box<SolveFailure>> {
     let mut path = Path::new(model, options, progress);
-    let outcome = path.follow(options.increments);
+    let outcome = path.follow(options.increments, milestones);
     let state = path.last.state;
     let solution = path.recorder.finish(model, &state, path.statistics);
     match outcome {
@@ -60,6 +82,8 @@ const WANTED_ITERATIONS: f64 = 7.0;
 const PATIENCE: usize = 12;
 /// Smallest increment, in first ones: the path has met a point that no increment of the load can pass.
 const SMALLEST: f64 = 1e-6;
+/// Milestones nearer than this are where the path is already: it may have got there as a bend of a load.
+const SAME_PLACE: f64 = 1e-12;
 /// Most increments, accepted or rejected: a path that still creeps after them leads nowhere in useful time.
 const MOST_INCREMENTS: usize = 10_000;
 
@@ -99,11 +123,11 @@ impl<'a> Path<'a> {
         }
     }
 
-    fn follow(&mut self, increments: Option<usize>) -> Result<(), SolveError> {
+    fn follow(&mut self, increments: Option<usize>, milestones: &[f64]) -> Result<(), SolveError> {
         let brought_up = if self.model.loaded_at_start() {
             self.last.place = -1.0;
             let reference = self.last.clone();
-            let outcome = self.automatic(0.0);
+            let outcome = self.automatic(0.0, None).map(|_| ());
             self.before = None;
             self.statistics.increments = 0;
             if outcome.is_err() {
@@ -122,7 +146,7 @@ impl<'a> Path<'a> {
         brought_up?;
         match increments {
             Some(count) => self.equal(count),
-            None => self.stages(),
+            None => self.stages(milestones),
         }
     }
 
@@ -135,17 +159,25 @@ impl<'a> Path<'a> {
         Ok(())
     }
 
-    /// Automatic increments from bend to bend of the loads' courses, so that no peak is stepped over.
-    fn stages(&mut self) -> Result<(), SolveError> {
+    /// Automatic increments from bend to bend of the loads' courses, so that no peak is stepped over, and from
+    /// milestone to milestone.
+    fn stages(&mut self, milestones: &[f64]) -> Result<(), SolveError> {
+        let mut step = None;
         while self.last.place < 1.0 {
-            let bend = self.model.next_bend(self.last.place);
-            self.automatic(bend.map_or(1.0, |bend| bend.min(1.0)))?;
+            let here = self.last.place;
+            let bend = self.model.next_bend(here).unwrap_or(1.0).min(1.0);
+            let milestone = milestones.iter().copied().find(|milestone| *milestone > here + SAME_PLACE);
+            let end = milestone.map_or(bend, |milestone| milestone.min(bend));
+            let next = self.automatic(end, step)?;
+            // Beyond a bend the loads grow at another rate: what has been learnt of it holds no more.
+            step = (end < bend).then_some(next);
         }
         Ok(())
     }
 
-    fn automatic(&mut self, end: f64) -> Result<(), SolveError> {
-        let mut step = self.first_step(end);
+    /// Goes on to `end` and returns the increment that seems right there; the first is `step`, or found anew.
+    fn automatic(&mut self, end: f64, step: Option<f64>) -> Result<f64, SolveError> {
+        let mut step = step.unwrap_or_else(|| self.first_step(end));
         let smallest = SMALLEST * step;
         while self.last.place < end {
             let left = end - self.last.place;
@@ -174,7 +206,7 @@ impl<'a> Path<'a> {
                 );
             }
         }
-        Ok(())
+        Ok(step)
     }
 
     /// The share of the way to `end` on which the linear answer turns or moves no node too far.

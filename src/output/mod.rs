@@ -1,6 +1,7 @@
 //! Results as files: tables, a summary, a plot and the scene as solved.
 
 mod csv;
+pub mod study;
 mod summary;
 mod svg;
 
@@ -32,8 +33,16 @@ pub struct Outcome {
 /// # Errors
 /// [`Error::File`] if it cannot be created, or the summary not removed.
 pub fn prepare(dir: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(dir).map_err(|source| cannot_write(dir, source))?;
+    create(dir)?;
     remove(dir.join("summary.json"))
+}
+
+/// Creates the folder for the results if it is absent.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be created.
+pub fn create(dir: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(dir).map_err(|source| cannot_write(dir, source))
 }
 
 /// A solution with the scene it belongs to.

@@ -10,6 +10,7 @@ mod frequencies;
 mod motion;
 mod path;
 mod shapes;
+mod study;
 
 use std::io;
 use std::path::Path;
@@ -21,6 +22,7 @@ use canvas::{Anchor, Canvas, LARGE, shortened};
 use frame::Area;
 use motion::{Motion, draw_column};
 use shapes::{Amount, Shapes};
+pub(super) use study::study;
 
 /// Height of a figure without its title [px].
 const HEIGHT: f64 = 430.0;
@@ -73,7 +75,7 @@ fn under_load(scene: &Scene, solution: &Solution) -> io::Result<String> {
         None => LOAD_FACTOR,
     };
     let width = WIDTHS[usize::from(curves.is_none() || shapes.is_none())];
-    sheet(scene, [width, HEIGHT], |canvas, whole| {
+    sheet(scene.title.as_deref(), [width, HEIGHT], |canvas, whole| {
         let [left, right] = match (&curves, &shapes) {
             (Some(_), Some(_)) => halves(whole, 0.46 * width),
             _ => [whole; 2],
@@ -106,7 +108,7 @@ fn in_time(scene: &Scene, solution: &Solution) -> io::Result<String> {
         (None, _) => WIDTH_IN_TIME,
     };
     let height = HEIGHTS[column.len().min(HEIGHTS.len() - 1)];
-    sheet(scene, [width, height], |canvas, whole| {
+    sheet(scene.title.as_deref(), [width, height], |canvas, whole| {
         let [left, mut right] =
             if shapes.is_some() && !column.is_empty() { halves(whole, 0.54 * width) } else { [whole; 2] };
         draw_column(canvas, left, &column, &motion)?;
@@ -125,7 +127,7 @@ fn of_modes(scene: &Scene, solution: &Solution) -> io::Result<String> {
     ends.extend(solution.shapes.get(1..).and_then(<[Shape]>::last));
     let shapes = shapes::shapes(&ends);
     let width = WIDTHS[usize::from(shapes.is_none() || solution.modes.is_empty())];
-    sheet(scene, [width, HEIGHT], |canvas, whole| {
+    sheet(scene.title.as_deref(), [width, HEIGHT], |canvas, whole| {
         let [left, right] = match (&shapes, solution.modes.is_empty()) {
             (Some(_), false) => halves(whole, 0.54 * width),
             _ => [whole; 2],
@@ -151,11 +153,11 @@ fn halves(whole: Area, left: f64) -> [Area; 2] {
 
 /// A sheet of a size without its title [px], and the area below the title.
 fn sheet(
-    scene: &Scene,
+    title: Option<&str>,
     [width, height]: [f64; 2],
     draw: impl FnOnce(&mut Canvas, Area) -> io::Result<()>,
 ) -> io::Result<String> {
-    let title = scene.title.as_deref().filter(|title| !title.trim().is_empty());
+    let title = title.filter(|title| !title.trim().is_empty());
     let above = title.map_or(0.0, |_| TITLE);
     let whole = Area { left: MARGIN, top: MARGIN + above, right: width - MARGIN, bottom: height + above };
     canvas::document([width, whole.bottom], |canvas| {

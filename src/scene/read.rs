@@ -213,10 +213,6 @@ pub(super) fn refuse_non_finite(document: &Value) -> Result<(), SceneError> {
 
 /// Refuses what scenes may have one day.
 fn refuse_unavailable(document: &Value) -> Result<(), SceneError> {
-    if document.get("study").is_some() {
-        let expected = "one of the analyses `[statics]`, `[dynamics]` and `[modes]`";
-        return Err(SceneError::new("study", "is not available yet", expected));
-    }
     let dynamics = document.get("dynamics");
     if dynamics.and_then(|table| table.get("accuracy")).is_some() {
         let problem = "is not available yet: the step is not chosen by the local error";

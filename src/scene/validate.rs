@@ -7,6 +7,7 @@ mod names;
 mod parts;
 mod rod;
 mod section;
+mod study;
 
 use toml::Value;
 
@@ -44,7 +45,8 @@ impl Scene {
         for index in 0..self.probe.len() {
             parts::probe(self, index)?;
         }
-        analysis::analysis(self)
+        analysis::analysis(self)?;
+        study::study(self)
     }
 }
 

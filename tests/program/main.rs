@@ -3,11 +3,12 @@
 mod mistakes;
 mod moving;
 mod solver;
+mod study;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mistakes::{FORMS, GOOD, Mistake, TYPOS, UNAVAILABLE, VALUES};
+use mistakes::{FORMS, GOOD, Mistake, STUDY, TYPOS, UNAVAILABLE, VALUES};
 use tempfile::TempDir;
 
 struct Ended {
@@ -81,6 +82,11 @@ fn wrong_forms_are_refused() {
 #[test]
 fn impossible_values_are_refused() {
     refuses(GOOD, VALUES);
+}
+
+#[test]
+fn wrong_lists_of_a_study_are_refused() {
+    refuses(GOOD, STUDY);
 }
 
 #[test]
@@ -210,17 +216,6 @@ fn wrong_commands_are_refused() {
     }
     let version = cosserat(&["--version"]).stdout;
     assert!(version.contains(env!("CARGO_PKG_VERSION")), "{version}");
-}
-
-#[test]
-fn the_study_is_not_available_yet() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = write_scene(&folder, GOOD);
-    let out = folder.path().join("out");
-    let ended = cosserat(&["study", text(&path), "--out", text(&out)]);
-    assert_eq!(ended.code, Some(2));
-    assert!(ended.stderr.contains("not available yet"), "{}", ended.stderr);
-    assert!(!out.exists());
 }
 
 #[test]

@@ -268,10 +268,29 @@ pub const VALUES: &[Mistake] = &[
     mistake("[statics]\nincrements = 5\ntolerance = 1e-8\nnewton = \"mixed\"\nmax_iterations = 50\n", "", "title", "statics", "[statics]"),
 ];
 
+/// Lists of a study that make no sense.
+#[rustfmt::skip]
+pub const STUDY: &[Mistake] = &[
+    mistake("[plot]", "[study]\ndegres = [1]\n[plot]", "degres", "study.degres", "did you mean `degree`"),
+    mistake("[plot]", "[study]\ndegree = 2\n[plot]", "degree = 2\n[plot]", "study.degree", "a list of degrees"),
+    mistake("[plot]", "[study]\ndegree = []\n[plot]", "degree = []", "study.degree", "at least one entry"),
+    mistake("[plot]", "[study]\ndegree = [1, 9]\n[plot]", "degree = [1, 9]", "study.degree.1", "from 1 to 8"),
+    mistake("[plot]", "[study]\ndegree = [1.5]\n[plot]", "degree = [1.5]", "study.degree.0", "a whole number"),
+    mistake("[plot]", "[study]\ndegree = [2, 2]\n[plot]", "degree = [2, 2]", "study.degree.1", "only once"),
+    mistake("[plot]", "[study]\nelements = [10, 0]\n[plot]", "elements = [10", "study.elements.1", "at least 1"),
+    mistake("[plot]", "[study]\ninterpolation = [\"r13\"]\n[plot]", "interpolation = [", "study.interpolation.0", "did you mean \"r12\""),
+    mistake("[plot]", "[study]\nincrements = [\"auto\"]\n[plot]", "increments = [", "study.increments.0", "or \"automatic\""),
+    mistake("[plot]", "[study]\nincrements = [0]\n[plot]", "increments = [0]", "study.increments.0", "at least 1"),
+    mistake("[plot]", "[study]\ntime_step = [0.1]\n[plot]", "time_step = [0.1]", "study.time_step", "beside `[dynamics]`"),
+    mistake("[plot]", "[study]\ntolerance = [\"tight\"]\n[plot]", "tolerance = [\"", "study.tolerance.0", "or \"default\""),
+    mistake("[plot]", "[study]\ntolerance = [-1.0]\n[plot]", "tolerance = [-1", "study.tolerance.0", "a positive tolerance"),
+    mistake("[plot]", "[study]\naccuracies = [0.0]\n[plot]", "accuracies", "study.accuracies.0", "a positive accuracy"),
+    mistake("title = \"all tables\"", "study = [1]\ntitle = \"all tables\"", "study = [1]", "study", "a table `[study]`"),
+];
+
 /// What scenes may say one day.
 #[rustfmt::skip]
 pub const UNAVAILABLE: &[Mistake] = &[
-    mistake("[plot]", "[study]\n[plot]", "[study]", "study", "not available yet"),
     mistake("[plot]", "[dynamics]\naccuracy = 1e-5\n[plot]", "accuracy", "dynamics.accuracy", "not available yet"),
     mistake("\"r12\"", "\"quaternion\"", "quaternion", "rod.0.interpolation", "not available yet"),
     mistake("\"cosserat\"", "\"shear-rigid\"", "theory", "rod.0.theory", "not available yet"),

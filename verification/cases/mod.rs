@@ -56,6 +56,7 @@ mod spring_work;
 mod spun_ring;
 mod static_rods;
 mod straight_to_helix;
+mod study;
 mod time_steps;
 mod wilberforce;
 
@@ -129,6 +130,7 @@ pub fn all() -> Vec<Case> {
         spun_ring::all(),
         static_rods::all(),
         straight_to_helix::all(),
+        study::all(),
         time_steps::all(),
         wilberforce::all(),
     ]

@@ -124,6 +124,25 @@ impl Axis {
         Self { range, ticks, title }
     }
 
+    /// A logarithmic axis; the range is in decades. Ticks at powers of ten, where these are few also at 2 and 5 times
+    /// them, where they are many not at all of them.
+    pub fn logarithmic(range: Range, title: &str) -> Self {
+        let (first, last) = (range.low.ceil() as i32, range.high.floor() as i32);
+        let every = 1 + (range.length() / 9.0) as i32;
+        let wanted = |decade: &i32| decade.rem_euclid(every) == 0;
+        let mut ticks: Vec<(f64, String)> =
+            (first..=last).filter(wanted).map(|decade| (f64::from(decade), power_of_ten(decade))).collect();
+        if range.length() < 2.5 {
+            let between = (first - 1..=last).flat_map(|decade| [2.0, 5.0].map(|digit| (decade, digit)));
+            let between = between.map(|(decade, digit)| {
+                let label = format!("{digit}·{}", power_of_ten(decade));
+                (f64::from(decade) + f64::log10(digit), label)
+            });
+            ticks.extend(between.filter(|(value, _)| (range.low..=range.high).contains(value)));
+        }
+        Self { range, ticks, title: title.to_owned() }
+    }
+
     /// The same ticks without numbers and title, above another panel that has them.
     pub fn without_labels(self) -> Self {
         let ticks = self.ticks.into_iter().map(|(value, _)| (value, String::new()));
@@ -242,6 +261,16 @@ mod tests {
             assert!(!written.contains("NaN") && !written.contains("inf"), "{written}");
         }
         assert_eq!(Range::of([f64::NAN, f64::INFINITY, 1e300]), None);
+    }
+
+    #[test]
+    fn logarithmic_axes_have_powers_of_ten() {
+        let labels = |low, high| -> Vec<String> {
+            Axis::logarithmic(Range { low, high }, "e").ticks.into_iter().map(|tick| tick.1).collect()
+        };
+        assert_eq!(labels(-3.2, -0.5), ["10⁻³", "10⁻²", "10⁻¹"]);
+        assert_eq!(labels(-0.8, 0.4), ["10⁰", "2·10⁻¹", "5·10⁻¹", "2·10⁰"]);
+        assert_eq!(labels(-12.5, 0.5), ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
     }
 
     #[test]

@@ -32,7 +32,7 @@ fn refuse_arrays(document: &Value) -> Result<(), SceneError> {
         }
         _ => Ok(()),
     };
-    for key in ["statics", "dynamics", "modes", "plot"] {
+    for key in ["statics", "dynamics", "modes", "plot", "study"] {
         table(document.get(key), key.to_owned())?;
     }
     for key in ["rod", "body", "joint", "load", "probe"] {
@@ -245,6 +245,9 @@ fn plainly(path: &[String], expected: &str) -> String {
 /// What belongs to a key, with its unit.
 fn describe(path: &[String]) -> Option<&'static str> {
     let table = path.first().map(String::as_str);
+    if let Some(described) = describe_study(path) {
+        return Some(described);
+    }
     Some(match path.last()?.as_str() {
         "name" | "title" => "a string in quotes",
         "gravity" if path.len() == 1 => "an acceleration `[x, y, z]` [m/s²]",
@@ -320,6 +323,32 @@ fn describe(path: &[String]) -> Option<&'static str> {
         "dynamics" if path.len() == 1 => "a table `[dynamics]`",
         "modes" if path.len() == 1 => "a table `[modes]`",
         "plot" if path.len() == 1 => "a table `[plot]`",
+        "study" if path.len() == 1 => "a table `[study]`",
+        _ => return None,
+    })
+}
+
+/// What belongs to a list of the study, or to one of its entries.
+fn describe_study(path: &[String]) -> Option<&'static str> {
+    let (table, rest) = path.split_first()?;
+    let (list, entry) = rest.split_first()?;
+    if table != "study" {
+        return None;
+    }
+    Some(match (list.as_str(), entry.is_empty()) {
+        ("degree", true) => "a list of degrees, such as `[1, 2, 4]`",
+        ("degree", false) => "a whole number, the polynomial degree, from 1 to 8",
+        ("elements", true) => "a list of numbers of elements, such as `[10, 20, 40]`",
+        ("elements", false) => "a whole number of elements, at least 1",
+        ("interpolation", true) => "a list of interpolations, such as `[\"r12\", \"se3\"]`",
+        ("increments", true) => "a list of numbers of increments, such as `[\"automatic\", 100]`",
+        ("increments", false) => "a whole number of increments, at least 1, or \"automatic\"",
+        ("time_step", true) => "a list of time steps [s], such as `[1e-3, 5e-4]`",
+        ("time_step", false) => "a positive time step [s]",
+        ("tolerance", true) => "a list of tolerances, such as `[\"default\", 1e-8]`",
+        ("tolerance", false) => "a positive number [N, N m], or \"default\"",
+        ("accuracies", true) => "a list of accuracies, such as `[1e-2, 1e-4]`",
+        ("accuracies", false) => "a positive number, relative to the rods' length and in radians",
         _ => return None,
     })
 }
