@@ -12,7 +12,7 @@ mod rod;
 mod study;
 mod validate;
 
-pub use analysis::{Analysis, Coordinates, Dynamics, Method, Modes, NewtonKind, Statics};
+pub use analysis::{Analysis, Coordinates, Dynamics, Method, Modes, NewtonKind, Statics, Step};
 pub use body::{Body, Shape};
 pub(crate) use part::{Part, parse_point};
 pub use read::SceneFile;

@@ -133,8 +133,8 @@ pub enum SolveError {
     /// A time step did not reach the tolerance.
     #[error(
         "the step to time {time:?} s failed: after {iterations} iterations the residual is {residual:.3e}, the \
-         tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s; a shorter \
-         `time_step` may pass"
+         tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s; shorter steps may \
+         pass"
     )]
     Step {
         /// The time that was tried [s].
@@ -151,6 +151,18 @@ pub enum SolveError {
         steps: usize,
         /// The last time that converged [s].
         reached: f64,
+    },
+    /// No step is short enough for the accuracy.
+    #[error(
+        "no step on from time {reached:?} s was accepted: {obstacle}, after {steps} steps; a larger `accuracy` may pass"
+    )]
+    Accuracy {
+        /// The last time that was reached [s].
+        reached: f64,
+        /// Steps that were accepted before.
+        steps: usize,
+        /// What is in the way.
+        obstacle: Obstacle,
     },
     /// There are no accelerations and joint forces that agree with the start.
     #[error("no accelerations found that agree with the start: {reason}")]
@@ -212,6 +224,50 @@ pub enum StopReason {
         rod: usize,
         /// Index of the element.
         element: usize,
+    },
+}
+
+/// Why no step that an accuracy asks for was accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum Obstacle {
+    /// The estimated error is too large.
+    #[error(
+        "a step of {length:.3e} s has {excess:.3e} times the error that is allowed, and the shortest is {shortest:.3e} s"
+    )]
+    Error {
+        /// The step that was tried [s].
+        length: f64,
+        /// Its error over what it may be.
+        excess: f64,
+        /// The shortest step that is tried [s].
+        shortest: f64,
+    },
+    /// Newton's iteration did not reach the tolerance.
+    #[error(
+        "in a step of {length:.3e} s the residual after {iterations} iterations is {residual:.3e}, the tolerance \
+         {tolerance:.3e} ({reason}), and the shortest is {shortest:.3e} s"
+    )]
+    Newton {
+        /// The step that was tried [s].
+        length: f64,
+        /// Iterations spent on it.
+        iterations: usize,
+        /// The last finite residual, in the units of the active test.
+        residual: f64,
+        /// What it was held against.
+        tolerance: f64,
+        /// What ended the iteration.
+        reason: StopReason,
+        /// The shortest step that is tried [s].
+        shortest: f64,
+    },
+    /// There is no end of them.
+    #[error("more than {most} steps were tried, the last of {length:.3e} s")]
+    Steps {
+        /// Most steps, accepted or rejected.
+        most: usize,
+        /// The last one [s].
+        length: f64,
     },
 }
 

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use cosserat::scene::{Body, Joint, JointKind, Scene};
+use cosserat::scene::{Body, Dynamics, Joint, JointKind, Scene, Step};
 use cosserat::solution::Solution;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -40,14 +40,14 @@ pub fn joint(name: &str, kind: JointKind, between: [&str; 2], point: [f64; 3]) -
 pub fn with_step(scene: &Scene, step: f64) -> Scene {
     let mut scene = scene.clone();
     if let Some(options) = &mut scene.dynamics {
-        options.time_step = step;
+        options.step = Step::Constant(step);
     }
     scene
 }
 
 /// Runs with the scene's step, half and a quarter of it.
 pub fn halved_twice(scene: &Scene) -> Result<[Solution; 3], Box<dyn Error>> {
-    let step = scene.dynamics.as_ref().ok_or("the scene has no [dynamics]")?.time_step;
+    let step = scene.dynamics.as_ref().and_then(Dynamics::time_step).ok_or("no constant step")?;
     let solve = |part: f64| run(&with_step(scene, step * part));
     Ok([solve(1.0)?, solve(0.5)?, solve(0.25)?])
 }

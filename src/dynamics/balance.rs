@@ -10,10 +10,13 @@ pub struct Balance {
     power: f64,
     /// Kinetic and strain energy at the start, and what the loads have brought since [J].
     from_loads: f64,
-    /// ∫ |power| dt and the energy of the start: what there was to go round, and the rounding floor [J].
+    /// ∫ |power| dt and the energy of the start: what there was to go round [J].
     turnover: f64,
     /// The largest part of its turnover that a surplus has been, and that surplus and turnover [J].
     worst: (f64, f64, f64),
+    /// The rounding floor is that of the shortest step so far [s].
+    shortest: f64,
+    floor: f64,
 }
 
 /// A surplus of this part of the turnover is worth a warning,
@@ -23,22 +26,38 @@ const RUNAWAY: f64 = 10.0;
 
 impl Balance {
     /// From the power of the loads and the energies at the start.
-    pub fn new(model: &Model, time_step: f64, power: f64, energies: &Energies) -> Self {
+    pub fn new(power: f64, energies: &Energies) -> Self {
         let energy = energies.kinetic + energies.strain;
-        let turnover = energy + floor(model, time_step);
-        Self { power, from_loads: energy, turnover, worst: (0.0, 0.0, 0.0) }
+        Self {
+            power,
+            from_loads: energy,
+            turnover: energy,
+            worst: (0.0, 0.0, 0.0),
+            shortest: f64::INFINITY,
+            floor: 0.0,
+        }
     }
 
     /// After a step; an error where energy runs away.
-    pub fn add(&mut self, length: f64, power: f64, energies: &Energies) -> Result<(), StopReason> {
+    pub fn add(
+        &mut self,
+        model: &Model,
+        length: f64,
+        power: f64,
+        energies: &Energies,
+    ) -> Result<(), StopReason> {
+        if length < self.shortest {
+            (self.shortest, self.floor) = (length, floor(model, length));
+        }
         self.from_loads += 0.5 * length * (self.power + power);
         self.turnover += 0.5 * length * (self.power.abs() + power.abs());
         self.power = power;
         let surplus = energies.kinetic + energies.strain - self.from_loads;
         // A free body that rests has no turnover, and no surplus either.
-        let part = if surplus > 0.0 { surplus / self.turnover } else { 0.0 };
+        let turnover = self.turnover + self.floor;
+        let part = if surplus > 0.0 { surplus / turnover } else { 0.0 };
         if part > self.worst.0 {
-            self.worst = (part, surplus, self.turnover);
+            self.worst = (part, surplus, turnover);
         }
         if part > RUNAWAY { Err(StopReason::Energy) } else { Ok(()) }
     }

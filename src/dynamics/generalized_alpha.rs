@@ -23,11 +23,35 @@
 //! joints alone ask for, M u̇ = Gᵀ μ, G u̇ = −Ġ u: nothing where the motion starts from rest. (Arnold, Brüls & Cardona
 //! 2015 trace the same error; what remains in the first multipliers is of order h.)
 //!
+//! # Steps of different length
+//! With δ = α_m − α_f, a has to stand δ h' after the time that was reached when the next step has the length h':
+//!
+//! ```text
+//! a ← a + δ (h' − h) ÿ,     ÿ ≈ (ẏ₊ − ẏ)/h
+//! ```
+//!
+//! The difference is off by ½ h y⃛, a by O(h²) and y by O(h³) in a step: order 2 remains whatever the lengths, which
+//! without the correction would be lost, and joints' forces keep an error of order h where lengths change at random.
+//! (Brüls & Arnold 2008 have the same in terms of a multistep method.) At the start h = 0 and ÿ is the above u̇.
+//!
+//! # The error of a step
+//! With a = ẏ + δ h ÿ + E h² y⃛ the recursion gives ½ (1 − α_f) = (1 − α_m)(½ + δ) + E, so E = δ (α_m − ½) = 2 δ²; with
+//! γ = ½ − δ a step ends off by
+//!
+//! ```text
+//! C h³ y⃛,     C = E + γ (½ + δ) − 1/6 = 1/12 + δ²
+//! ```
+//!
+//! the trapezoidal rule's for ρ = 1 and that of BDF 2, 1/3, for ρ = 0. For y = P it turns by
+//! 2 P̄ ∘ P⃛ = ω̈ + ½ ω × ω̇ − ¼ |ω|² ω, from Ṗ = ½ P ∘ (0, ω). After a kink, where ÿ jumps by Δ, a is off by −δ h Δ and
+//! then by −α_m/(1 − α_m) of that from step to step: y by δ h² Δ [1 − α_m − γ] = δ² h² Δ in all, up to the sign.
+//!
 //! P₊ keeps no norm by itself; after the step it is normalised and its part of a scaled by the same factor:
 //! (10) is linear in P, so this turns nothing.
 
 use nalgebra::{Vector3, Vector4};
 
+use super::accuracy::Leading;
 use super::{Integrator, Moving, level, start};
 use crate::assembly::Residual;
 use crate::inertia::{Velocity, spin_from_turn};
@@ -36,6 +60,9 @@ use crate::rod::StepVelocity;
 use crate::rotation::{quaternion_product, quaternion_rate};
 use crate::scene::NewtonKind;
 use crate::solution::{Statistics, StopReason};
+
+/// Lengths of steps that differ by less than this part are the same: they are differences of times.
+const SAME: f64 = 1e-9;
 
 /// A node's part of y: (r, P) and (v, ω), or one of its rates.
 #[derive(Clone, Copy, Debug)]
@@ -65,28 +92,55 @@ pub struct GeneralizedAlpha {
     alpha_m: f64,
     alpha_f: f64,
     gamma: f64,
-    /// a of every node.
-    averages: Vec<Coordinates>,
+    memory: Memory,
+    /// At the start of the last step.
+    before: Memory,
     /// ẏ at the start of the step, and y*.
     rates: Vec<Coordinates>,
     known: Vec<Coordinates>,
 }
 
+/// What one step leaves to the next.
+#[derive(Clone, Debug)]
+struct Memory {
+    /// a of every node.
+    averages: Vec<Coordinates>,
+    /// ÿ.
+    slopes: Vec<Coordinates>,
+    /// a stands (α_m − α_f) times this length after the time that was reached.
+    length: f64,
+}
+
+impl Memory {
+    fn copy_from(&mut self, other: &Self) {
+        self.averages.copy_from_slice(&other.averages);
+        self.slopes.copy_from_slice(&other.slopes);
+        self.length = other.length;
+    }
+}
+
+impl Memory {
+    /// Where no step has led to.
+    fn new(start: &mut Moving) -> Result<Self, StopReason> {
+        let centripetal = start::centripetal(start)?;
+        let slopes = centripetal.iter().zip(start.state.quaternions()).map(|(u, quaternion)| Coordinates {
+            position: u.translation,
+            quaternion: quaternion_rate(quaternion) * u.rotation,
+            velocity: Velocity::default(),
+        });
+        Ok(Self { averages: rates(start), slopes: slopes.collect(), length: 0.0 })
+    }
+}
+
 impl GeneralizedAlpha {
-    /// From a consistent start, for steps of this length.
-    pub fn new(spectral_radius: f64, time_step: f64, start: &mut Moving) -> Result<Self, StopReason> {
+    /// From a consistent start.
+    pub fn new(spectral_radius: f64, start: &mut Moving) -> Result<Self, StopReason> {
         let rho = spectral_radius;
         let (alpha_m, alpha_f) = ((3.0 * rho - 1.0) / (2.0 * (1.0 + rho)), rho / (1.0 + rho));
-        let centripetal = start::centripetal(start)?;
+        let memory = Memory::new(start)?;
         let rates = rates(start);
-        let mut averages = rates.clone();
-        for ((a, u), quaternion) in averages.iter_mut().zip(&centripetal).zip(start.state.quaternions()) {
-            let ahead = (alpha_m - alpha_f) * time_step;
-            a.position += u.translation * ahead;
-            a.quaternion += quaternion_rate(quaternion) * u.rotation * ahead;
-        }
         let gamma = 0.5 + alpha_f - alpha_m;
-        Ok(Self { alpha_m, alpha_f, gamma, averages, known: rates.clone(), rates })
+        Ok(Self { alpha_m, alpha_f, gamma, before: memory.clone(), memory, known: rates.clone(), rates })
     }
 }
 
@@ -102,9 +156,18 @@ impl Integrator for GeneralizedAlpha {
         let Self { alpha_m, alpha_f, gamma, .. } = *self;
         let weight = length * gamma / (1.0 - alpha_m);
         let b = weight * (1.0 - alpha_f);
+        self.before.copy_from(&self.memory);
+        let Memory { averages, slopes, length: old } = &mut self.memory;
+        if (length - *old).abs() > SAME * length {
+            let ahead = (alpha_m - alpha_f) * (length - *old);
+            for (a, slope) in averages.iter_mut().zip(&*slopes) {
+                *a = Coordinates::combine([(1.0, a), (ahead, slope)]);
+            }
+        }
+        *old = length;
         self.rates = rates(moving);
         let now = coordinates(moving);
-        for (((known, y), rate), a) in self.known.iter_mut().zip(&now).zip(&self.rates).zip(&self.averages) {
+        for (((known, y), rate), a) in self.known.iter_mut().zip(&now).zip(&self.rates).zip(&*averages) {
             let of_average = length * (1.0 - gamma) - weight * alpha_m;
             *known = Coordinates::combine([(1.0, y), (of_average, a), (weight * alpha_f, rate)]);
         }
@@ -112,17 +175,50 @@ impl Integrator for GeneralizedAlpha {
         let converged = newton.solve(&mut step, statistics)?;
 
         let after = rates(moving);
-        for (((a, before), after), node) in self.averages.iter_mut().zip(&self.rates).zip(&after).zip(0..) {
+        let rates = self.rates.iter().zip(&after);
+        for (((a, slope), (before, after)), node) in averages.iter_mut().zip(slopes).zip(rates).zip(0..) {
             let scale = 1.0 / (1.0 - alpha_m);
             *a = Coordinates::combine([
                 ((1.0 - alpha_f) * scale, after),
                 (alpha_f * scale, before),
                 (-alpha_m * scale, a),
             ]);
-            a.quaternion /= moving.state.quaternions()[node].norm();
+            *slope = Coordinates::combine([(1.0 / length, after), (-1.0 / length, before)]);
+            let norm = moving.state.quaternions()[node].norm();
+            a.quaternion /= norm;
+            slope.quaternion /= norm;
         }
         moving.state.normalize();
         Ok(converged)
+    }
+
+    fn restart(&mut self, moving: &mut Moving, time: f64, length: f64) -> Result<(), StopReason> {
+        // Rods without mass are in motion: b as long as the step, as in the step itself.
+        start::accelerate(moving, time, length)?;
+        self.memory = Memory::new(moving)?;
+        Ok(())
+    }
+
+    fn undo(&mut self) {
+        std::mem::swap(&mut self.memory, &mut self.before);
+    }
+
+    fn leading(&self) -> Leading {
+        let lag = self.alpha_f - self.alpha_m;
+        Leading { order: 2, constant: 1.0 / 12.0 + lag * lag, kink: lag * lag }
+    }
+
+    fn derivatives(&self, moving: &Moving, derivatives: &mut [Velocity]) {
+        let (slopes, h) = (&self.memory.slopes, self.memory.length);
+        for (node, d) in derivatives.iter_mut().enumerate() {
+            let jerk = &slopes[node].velocity;
+            let (before, after) = (&self.rates[node].velocity, &moving.motion.accelerations[node]);
+            let acceleration = (before.rotation + after.rotation) * 0.5;
+            let omega = moving.motion.velocities[node].rotation - acceleration * (0.5 * h);
+            d.translation = jerk.translation;
+            d.rotation =
+                jerk.rotation + omega.cross(&acceleration) * 0.5 - omega * (0.25 * omega.norm_squared());
+        }
     }
 }
 

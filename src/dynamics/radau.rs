@@ -12,12 +12,14 @@
 //! removed after the step by the smallest change, min δqᵀ M δq with g(q + δq) = 0; velocities, accelerations and
 //! multipliers follow as at the start, which gives these, too, order 5: Λ₃ alone has order 3.
 
+mod estimate;
 mod secants;
 mod system;
 mod tableau;
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector4};
 
+use super::accuracy::Leading;
 use super::{Integrator, Moving, level, start};
 use crate::assembly::{Blocks, Motion, Workspace};
 use crate::inertia::Velocity;
@@ -64,6 +66,11 @@ pub struct Radau {
     frames: Vec<Matrix3<f64>>,
     /// h of the step before; `None` before the first.
     previous: Option<f64>,
+    /// Whether the workspace has to be evaluated at the start of the step again.
+    stale: bool,
+    most_parts: usize,
+    /// r⃜ and 2 P̄ ∘ P⃜ of every node in the last step.
+    derivatives: Vec<Velocity>,
 }
 
 /// A stage's iterate, or what remains of the step before.
@@ -77,8 +84,8 @@ struct Stage {
 }
 
 impl Radau {
-    /// From a consistent start.
-    pub fn new(start: &Moving) -> Self {
+    /// From a consistent start. Steps that are not solved are done in parts, or left to who asked for them.
+    pub fn new(start: &Moving, parts: bool) -> Self {
         let systems = StageSystems::new(start.model);
         let size = systems.size();
         let stage =
@@ -93,6 +100,9 @@ impl Radau {
             weights: vec![0.0; STAGES * size],
             frames: start.state.poses().iter().map(|pose| pose.rotation).collect(),
             previous: None,
+            stale: false,
+            most_parts: if parts { MOST_PARTS } else { 1 },
+            derivatives: start.motion.velocities.clone(),
         }
     }
 
@@ -338,16 +348,34 @@ impl Integrator for Radau {
                     worst.iterations = worst.iterations.max(converged.iterations);
                     worst.residual = worst.residual.max(converged.residual);
                 }
-                Err(stop) if parts == MOST_PARTS => return Err(stop),
+                Err(stop) if parts == self.most_parts => return Err(stop),
                 Err(_) => {
                     (moving.state, moving.motion) = (state, motion);
-                    self.previous = None;
+                    self.undo();
                     statistics.rejected += 1;
                     (done, parts) = (2 * done, 2 * parts);
                 }
             }
         }
         Ok(worst)
+    }
+
+    fn restart(&mut self, _: &mut Moving, _: f64, _: f64) -> Result<(), StopReason> {
+        self.previous = None;
+        Ok(())
+    }
+
+    fn undo(&mut self) {
+        self.previous = None;
+        self.stale = true;
+    }
+
+    fn leading(&self) -> Leading {
+        self.estimate_leading()
+    }
+
+    fn derivatives(&self, _: &Moving, derivatives: &mut [Velocity]) {
+        derivatives.copy_from_slice(&self.derivatives);
     }
 }
 
@@ -362,13 +390,19 @@ impl Radau {
         statistics: &mut Statistics,
     ) -> Result<Converged, NotConverged> {
         let at = (&moving.state, &moving.motion);
-        self.factorize(moving.model, &mut moving.work, at, time - length, length)
-            .map_err(|reason| NotConverged { iterations: 0, residual: f64::INFINITY, reason })?;
+        let unsolved = |reason| NotConverged { iterations: 0, residual: f64::INFINITY, reason };
+        if self.stale {
+            let start = level(time - length);
+            moving.work.evaluate(moving.model, at.0, &start, Some(at.1)).map_err(unsolved)?;
+            self.stale = false;
+        }
+        self.factorize(moving.model, &mut moving.work, at, time - length, length).map_err(unsolved)?;
         // One real, one complex.
         statistics.factorizations += 2;
         self.predict(moving, length);
         let converged = self.iterate(moving, time - length, length, newton, statistics)?;
         self.previous = Some(length);
+        self.estimate(moving, length);
 
         let last = &self.stages[STAGES - 1];
         moving.state.clone_from(&last.state);

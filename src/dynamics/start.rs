@@ -13,7 +13,7 @@ use crate::state::State;
 
 /// Rods without mass have no equation for their acceleration; b² K with b this part of the time step stands in for
 /// their mass matrix. Nothing acts on them at the start, so that they follow the others without inertia as b → 0.
-const MASSLESS: f64 = 1e-4;
+pub const MASSLESS: f64 = 1e-4;
 
 /// Makes velocities, accelerations and multipliers at a time consistent with the positions:
 ///
@@ -23,13 +23,13 @@ const MASSLESS: f64 = 1e-4;
 /// ```
 ///
 /// At the start the first removes what rounding of the scene's numbers leaves of G u, at least kinetic energy; both
-/// have the same matrix, which is that of a time step of no length.
-pub fn accelerate(moving: &mut Moving, time: f64, time_step: f64) -> Result<(), StopReason> {
+/// have the same matrix, which is that of a time step of no length, or where there are rods without mass of the given b.
+pub fn accelerate(moving: &mut Moving, time: f64, b: f64) -> Result<(), StopReason> {
     let model = moving.model;
     let nodes = moving.state.poses().len();
     let mut right = vec![0.0; NODE * nodes + moving.state.multipliers().len()];
     let massless = model.rods.iter().any(|rod| rod.properties.inertia.is_none());
-    let b = if massless { MASSLESS * time_step } else { 0.0 };
+    let b = if massless { b } else { 0.0 };
     moving.motion.accelerations.fill(Velocity::default());
     moving.state.multipliers_mut().fill(0.0);
     moving.work.evaluate(model, &moving.state, &level(time), Some(&moving.motion))?;

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
-use super::validate::one_analysis;
+use super::analysis::steps_given;
+use super::validate::{one_analysis, one_step};
 use super::{CurveShape, Scene};
 use crate::error::{Error, SceneError};
 pub(super) use explain::{hint, one_of};
@@ -76,8 +77,8 @@ impl SceneFile {
 
     fn interpret(&self) -> Result<Scene, SceneError> {
         refuse_non_finite(&self.document)?;
-        refuse_unavailable(&self.document)?;
         refuse_several_analyses(&self.document)?;
+        refuse_steps(&self.document)?;
         let mut scene = explain::deserialize(&self.document)?;
         scene.validate()?;
         if let Some(folder) = &self.folder {
@@ -211,14 +212,10 @@ pub(super) fn refuse_non_finite(document: &Value) -> Result<(), SceneError> {
     walk(document, "")
 }
 
-/// Refuses what scenes may have one day.
-fn refuse_unavailable(document: &Value) -> Result<(), SceneError> {
-    let dynamics = document.get("dynamics");
-    if dynamics.and_then(|table| table.get("accuracy")).is_some() {
-        let problem = "is not available yet: the step is not chosen by the local error";
-        return Err(SceneError::new("dynamics.accuracy", problem, "a constant `time_step` [s] instead"));
-    }
-    Ok(())
+/// Here rather than by serde, to point at the entry; a table that is wrong in itself is left to serde.
+fn refuse_steps(document: &Value) -> Result<(), SceneError> {
+    let given = document.get("dynamics").and_then(steps_given);
+    given.map_or(Ok(()), |[time_step, accuracy]| one_step(time_step, accuracy))
 }
 
 /// Before the entries of an analysis are looked at: a surplus one need not be complete.

@@ -13,7 +13,7 @@ use toml::Value;
 
 use super::Scene;
 use super::read::refuse_non_finite;
-pub(super) use analysis::one_analysis;
+pub(super) use analysis::{one_analysis, one_step};
 use check::{Check, fail};
 
 impl Scene {

@@ -1,7 +1,9 @@
 //! Variants of a scene.
 
 use crate::error::SceneError;
-use crate::scene::{Dynamics, Increments, InterpolationKind, Reference, Rod, Scene, Statics, Tolerance};
+use crate::scene::{
+    Dynamics, Increments, InterpolationKind, Reference, Rod, Scene, Statics, Step, Tolerance,
+};
 
 /// What a variant of a scene changes; what is absent stays as the scene has it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,11 +96,11 @@ impl Settings {
 
 /// The constant time step of a motion, if it has one [s].
 pub(super) fn time_step(options: &Dynamics) -> Option<f64> {
-    Some(options.time_step)
+    options.time_step()
 }
 
 fn set_time_step(options: &mut Dynamics, time_step: f64) {
-    options.time_step = time_step;
+    options.step = Step::Constant(time_step);
 }
 
 /// A setting of an analysis that the scene does not have.
@@ -162,7 +164,7 @@ between = ["ground", "arc@0"]
         assert_eq!(rod.reference, Reference::Fit { samples: 19 });
         let motion = scene("[dynamics]\nend_time = 1.0\ntime_step = 0.1");
         let settings = Settings { time_step: Some(0.05), ..Settings::default() };
-        assert_eq!(settings.apply(&motion).unwrap().dynamics.unwrap().time_step, 0.05);
+        assert_eq!(settings.apply(&motion).unwrap().dynamics.unwrap().time_step(), Some(0.05));
         assert_eq!(Settings::default().apply(&motion).unwrap(), motion);
     }
 

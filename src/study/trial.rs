@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::error::Error;
 use crate::model::Model;
-use crate::scene::{Analysis, Scene, Statics};
+use crate::scene::{Analysis, Scene, Statics, Step};
 use crate::solution::{Solution, SolveError, SolveFailure, Statistics};
 use crate::study::milestones::no_path;
 use crate::study::{Milestones, Trajectory};
@@ -90,8 +90,11 @@ fn run(
 ) -> Result<Solution, Stop> {
     let solved = match scene.analysis() {
         Some(Analysis::Statics(options)) => statics::solve_through(model, options, milestones, progress),
-        // A constant step: it divides the intervals between milestones.
-        Some(Analysis::Dynamics(options)) => dynamics::solve(model, options, progress),
+        // A constant step divides the intervals between milestones.
+        Some(Analysis::Dynamics(options)) => match options.step {
+            Step::Constant(_) => dynamics::solve(model, options, progress),
+            Step::Accuracy(_) => dynamics::solve_through(model, options, milestones, progress),
+        },
         Some(Analysis::Modes(_)) => return Err(Stop::Setup(Error::Scene(no_path()))),
         None => statics::solve_through(model, &Statics::default(), milestones, progress),
     };

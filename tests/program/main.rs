@@ -184,7 +184,7 @@ fn wrong_overrides_are_refused() {
         ("gravity.0=nan", "a finite number"),
         ("load.0.value=[0, 0, inf]", "`load.0.value.2`: is inf"),
         ("dynamics.time_step=1e-3", "`dynamics`: is given beside `[statics]`"),
-        ("dynamics.accuracy=1e-3", "`dynamics.accuracy`: is not available yet"),
+        ("dynamics.accuracy=1e-3", "`dynamics`: is given beside `[statics]`"),
         ("modes.count=6", "only one of `[statics]`, `[dynamics]` and `[modes]`"),
         ("rod.0.interpolation=\"quaternion\"", "not available yet"),
     ] {

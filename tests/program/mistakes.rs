@@ -291,7 +291,6 @@ pub const STUDY: &[Mistake] = &[
 /// What scenes may say one day.
 #[rustfmt::skip]
 pub const UNAVAILABLE: &[Mistake] = &[
-    mistake("[plot]", "[dynamics]\naccuracy = 1e-5\n[plot]", "accuracy", "dynamics.accuracy", "not available yet"),
     mistake("\"r12\"", "\"quaternion\"", "quaternion", "rod.0.interpolation", "not available yet"),
     mistake("\"cosserat\"", "\"shear-rigid\"", "theory", "rod.0.theory", "not available yet"),
     mistake("\"cosserat\"", "\"inextensible\"", "theory", "rod.0.theory", "not available yet"),

@@ -70,6 +70,8 @@ fn moving_parts_are_accepted() {
             ("rotary_inertia = [1e-6, 2e-6, 3e-6]", ""),
         ],
         &[("time_step = 1e-2", "time_step = 2")],
+        &[("time_step = 1e-2", "accuracy = 1e-5")],
+        &[("time_step = 1e-2", "accuracy = 1e-5"), ("\"generalized-alpha\"", "\"radau\"")],
         &[("\"generalized-alpha\"", "\"radau\"")],
         // A scene of bodies alone.
         &[(rods, ""), (joints, ""), (clamp, ""), (along, ""), (middle, "")],

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use cosserat::scene::{InterpolationKind, Load, LoadKind, LoadTime, Scene};
+use cosserat::scene::{Dynamics, InterpolationKind, Load, LoadKind, LoadTime, Scene, Step};
 use cosserat::solution::Solution;
 use nalgebra::Vector3;
 
@@ -52,7 +52,7 @@ fn scene(
     scene.probe = [0.25, 0.5, 0.75, 1.0].map(|xi| probe(&format!("p{xi}"), &format!("rod@{xi}"))).to_vec();
     if let Some(options) = &mut scene.dynamics {
         options.end_time = end;
-        options.time_step = end / steps as f64;
+        options.step = Step::Constant(end / steps as f64);
     }
     Ok(scene)
 }
@@ -64,7 +64,7 @@ fn impulse(checks: &mut Checks) -> Outcome {
     scene.probe = (0..=intervals)
         .map(|k| probe(&format!("p{k}"), &format!("rod@{}", k as f64 / intervals as f64)))
         .collect();
-    let step = scene.dynamics.as_ref().ok_or("no motion")?.time_step;
+    let step = scene.dynamics.as_ref().and_then(Dynamics::time_step).ok_or("no constant step")?;
     let solution = follow(&scene)?;
     // Simpson's weights.
     let weight = |k: usize| if k == 0 || k == intervals { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };

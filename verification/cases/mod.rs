@@ -1,5 +1,6 @@
 //! The cases, one file a problem.
 
+mod accuracy;
 mod bend_45;
 mod body_chain;
 mod cantilever;
@@ -58,6 +59,7 @@ mod static_rods;
 mod straight_to_helix;
 mod study;
 mod time_steps;
+mod variable_steps;
 mod wilberforce;
 
 use crate::case::Case;
@@ -75,6 +77,7 @@ pub const LEFT_OUT: &[&str] = &[
 /// Every case.
 pub fn all() -> Vec<Case> {
     [
+        accuracy::all(),
         bend_45::all(),
         body_chain::all(),
         cantilever::all(),
@@ -132,6 +135,7 @@ pub fn all() -> Vec<Case> {
         straight_to_helix::all(),
         study::all(),
         time_steps::all(),
+        variable_steps::all(),
         wilberforce::all(),
     ]
     .into_iter()

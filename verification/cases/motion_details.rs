@@ -11,7 +11,7 @@ use crate::steps::{body, joint, run};
 use cosserat::Model;
 use cosserat::scene::{
     Body, Curve, CurveShape, Dynamics, Joint, JointKind, LoadKind, LoadTime, Method, Modes, NamedTime, Rod,
-    Scene, Section,
+    Scene, Section, Step,
 };
 use cosserat::solution::{SolveError, StopReason};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -185,7 +185,7 @@ fn runaway(checks: &mut Checks) -> Outcome {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/flexible_pendulum.toml");
     let mut scene = Scene::from_file(path)?;
     let Some(options) = &mut scene.dynamics else { return Err("the scene has no [dynamics]".into()) };
-    options.time_step = 0.1;
+    options.step = Step::Constant(0.1);
     let options = options.clone();
     let outcome = cosserat::dynamics::solve(&Model::new(&scene)?, &options, &mut |_, _| ());
     let stopped = matches!(

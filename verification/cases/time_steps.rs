@@ -126,6 +126,7 @@ fn finite(solution: &Solution) -> bool {
 fn check_failure(checks: &mut Checks, what: &str, scene: &Scene, iterations: usize) -> Outcome {
     let model = Model::new(scene)?;
     let options = scene.dynamics.as_ref().ok_or("no [dynamics]")?;
+    let step = options.time_step().ok_or("no constant step")?;
     let Err(failure) = dynamics::solve(&model, options, &mut |_, _| ()) else {
         return Err(format!("{what} did not fail").into());
     };
@@ -142,13 +143,7 @@ fn check_failure(checks: &mut Checks, what: &str, scene: &Scene, iterations: usi
     let last = partial.rows.last().map_or(f64::NAN, |row| row.parameter);
     checks.absolute(Kind::Invariant, format!("{what}: last time"), (last, reached), 0.0, reason);
     let reason = "steps are constant";
-    checks.absolute(
-        Kind::Invariant,
-        format!("{what}: time tried"),
-        (time - reached, options.time_step),
-        1e-12,
-        reason,
-    );
+    checks.absolute(Kind::Invariant, format!("{what}: time tried"), (time - reached, step), 1e-12, reason);
     let reason = "no more than were allowed";
     checks.below(Kind::Invariant, format!("{what}: iterations"), spent as f64, iterations as f64, reason);
     let reason = "it was not accepted, and it is a number";

@@ -312,6 +312,7 @@ fn describe(path: &[String]) -> Option<&'static str> {
         "tolerance" => "a positive number [N, N m]",
         "end_time" => "a positive time [s]",
         "time_step" => "a positive time step [s]",
+        "accuracy" => "a positive part of the rods' length, and angle [rad]",
         "method" => "\"generalized-alpha\" or \"radau\"",
         "spectral_radius" => "a number from 0 to 1",
         "count" => "a whole number of modes, at least 1",

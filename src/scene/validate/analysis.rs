@@ -2,7 +2,7 @@
 
 use super::check::{Check, MOST, at_least_one, fail, finite_number, positive};
 use crate::load::Course;
-use crate::scene::{Analysis, Coordinates, Dynamics, Method, Modes, Rod, Scene, Statics, parse_point};
+use crate::scene::{Analysis, Coordinates, Dynamics, Method, Modes, Rod, Scene, Statics, Step, parse_point};
 
 const TABLES: [&str; 3] = ["statics", "dynamics", "modes"];
 
@@ -58,22 +58,9 @@ fn statics(scene: &Scene, options: &Statics) -> Check {
 
 fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
     positive("dynamics.end_time", options.end_time, "a positive time [s]")?;
-    positive("dynamics.time_step", options.time_step, "a positive time step [s]")?;
-    let (end_time, time_step) = (finite_number(options.end_time), finite_number(options.time_step));
-    if options.time_step > options.end_time {
-        return fail(
-            "dynamics.time_step",
-            format!("is {time_step}, longer than the whole motion"),
-            format!("at most the end time, {end_time} [s]"),
-        );
-    }
-    let steps = options.end_time / options.time_step;
-    if steps > MOST as f64 {
-        return fail(
-            "dynamics.time_step",
-            format!("is {time_step}, which makes {steps:.3e} steps up to the end time"),
-            format!("a time step that makes at most {MOST} steps"),
-        );
+    match options.step {
+        Step::Constant(time_step) => constant_step(options.end_time, time_step)?,
+        Step::Accuracy(accuracy) => positive("dynamics.accuracy", accuracy, ACCURACY)?,
     }
     if let Some(tolerance) = options.tolerance {
         positive("dynamics.tolerance", tolerance, "a positive tolerance [N, N m; m, rad for joints]")?;
@@ -91,6 +78,45 @@ fn dynamics(scene: &Scene, options: &Dynamics) -> Check {
         );
     }
     massless.try_for_each(|(index, rod)| unloaded_start(scene, rod, index))
+}
+
+const ACCURACY: &str = "a positive part of the rods' length, and angle [rad]";
+
+fn constant_step(end_time: f64, time_step: f64) -> Check {
+    positive("dynamics.time_step", time_step, "a positive time step [s]")?;
+    if time_step > end_time {
+        return fail(
+            "dynamics.time_step",
+            format!("is {}, longer than the whole motion", finite_number(time_step)),
+            format!("at most the end time, {} [s]", finite_number(end_time)),
+        );
+    }
+    let steps = end_time / time_step;
+    if steps > MOST as f64 {
+        return fail(
+            "dynamics.time_step",
+            format!("is {}, which makes {steps:.3e} steps up to the end time", finite_number(time_step)),
+            format!("a time step that makes at most {MOST} steps"),
+        );
+    }
+    Ok(())
+}
+
+/// Exactly one of the two, given what the table has.
+pub(in crate::scene) fn one_step(time_step: bool, accuracy: bool) -> Check {
+    match (time_step, accuracy) {
+        (false, false) => fail(
+            "dynamics.time_step",
+            "is missing, and so is `accuracy`",
+            format!("either a positive time step [s], or `accuracy`: {ACCURACY}"),
+        ),
+        (true, true) => fail(
+            "dynamics.accuracy",
+            "is given beside `time_step`",
+            "either a constant `time_step` [s], or the `accuracy` that the steps are chosen by",
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// What acts at once on a rod without inertia would move it at once: from the unstressed start there is no motion.

@@ -18,7 +18,7 @@ use cosserat::quadrature::gauss_legendre;
 use nalgebra::{Matrix3, Vector3};
 
 use super::swing::{Swing, envelope, extrema, largest, peak};
-use super::{DENSITY, Pendulum, SHEAR, paper_steps, places};
+use super::{DENSITY, PAPER_STEP, Pendulum, SHEAR, paper_steps, places};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::references::Row;
 
@@ -105,7 +105,10 @@ fn table(checks: &mut Checks) -> Outcome {
     checks.absolute(Kind::ClosedForm, "1 − ρ", (1.0 - rho, 2e-3), 1e-3, reason);
     let options = paper_steps(8.0);
     let paper = seconds(&Pendulum::paper().swing_as_is(&options)?);
-    let half = cosserat::scene::Dynamics { time_step: 0.5 * options.time_step, ..options.clone() };
+    let half = cosserat::scene::Dynamics {
+        step: cosserat::scene::Step::Constant(0.5 * PAPER_STEP),
+        ..options.clone()
+    };
     let same = seconds(&theirs(rho).swing(&places()[1], &options)?);
     let halved = seconds(&theirs(rho).swing_as_is(&half)?);
     let both = "the spread of ρ times what 1 − ρ does; 1e-3 of the error of the time step (4/3 of the change with half \

@@ -6,6 +6,7 @@
 //! the unstressed spring. The references under `references/continuous/` come from the continuous rod equations, without
 //! finite elements.
 
+mod accuracy;
 mod authors;
 mod beat;
 mod bob;
@@ -38,6 +39,7 @@ use swing::Swing;
 /// Every case about the pendulum.
 pub fn all() -> Vec<Case> {
     [
+        accuracy::all(),
         authors::all(),
         beat::all(),
         bob::all(),
@@ -197,9 +199,12 @@ impl Pendulum {
     }
 }
 
+/// The paper's step [s].
+const PAPER_STEP: f64 = 5e-3;
+
 /// The paper's step, spectral radius and tolerance.
 fn paper_steps(end_time: f64) -> Dynamics {
-    Dynamics { tolerance: Some(1e-8), ..Dynamics::new(end_time, 5e-3) }
+    Dynamics { tolerance: Some(1e-8), ..Dynamics::new(end_time, PAPER_STEP) }
 }
 
 /// The program's defaults with a step.
