@@ -95,6 +95,7 @@
 // Units stand in brackets, [m]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+pub mod accuracy;
 pub mod assembly;
 pub mod body;
 pub mod constraint;

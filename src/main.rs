@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, Parser, Subcommand};
+use cosserat::accuracy::{self, Accurate, Shortfall};
 use cosserat::output::{self, Outcome};
 use cosserat::scene::{Analysis, Dynamics, Scene, SceneFile, Statics};
 use cosserat::solution::{Mode, Solution, SolveError, SolveFailure, Statistics};
@@ -37,6 +38,10 @@ enum Command {
     /// [dynamics], small vibrations about the equilibrium with [modes]. The folder then holds probes.csv,
     /// reactions.csv (with joints), energies.csv (dynamics), modes.csv (modes), plot.svg, scene.toml and
     /// summary.json; tables of an earlier run that do not belong to this one are removed.
+    ///
+    /// With --accuracy the settings are chosen instead of taken from the scene: degree, elements, increments or
+    /// time step, and tolerance. Runs are refined until the estimated error, the largest over probes and the whole
+    /// path, is no larger than asked: relative to the length of all rods for positions, radians for rotations.
     #[command(verbatim_doc_comment)]
     Run {
         #[command(flatten)]
@@ -44,6 +49,9 @@ enum Command {
         /// The folder for the results; created if absent.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+        /// Choose the settings that reach this accuracy, such as 1e-4.
+        #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+        accuracy: Option<f64>,
         /// Show no progress.
         #[arg(long)]
         quiet: bool,
@@ -90,6 +98,8 @@ enum Failure {
     Stopped(SolveError),
     /// The solver stopped early on the way to the reference of a study.
     Reference(SolveError),
+    /// The accuracy that was asked is not reached; the best results are written.
+    Inaccurate(Shortfall),
 }
 
 impl From<Error> for Failure {
@@ -102,7 +112,7 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Library(Error::Scene(_)) => 2,
-            Self::Stopped(_) | Self::Reference(_) => 3,
+            Self::Stopped(_) | Self::Reference(_) | Self::Inaccurate(_) => 3,
             Self::Library(Error::File { .. }) => 4,
         }
     }
@@ -114,6 +124,7 @@ impl Failure {
             Self::Reference(error) => {
                 format!("the reference that all runs would be held against was not reached: {error}")
             }
+            Self::Inaccurate(shortfall) => shortfall.to_string(),
         }
     }
 }
@@ -121,7 +132,10 @@ impl Failure {
 fn main() -> ExitCode {
     // clap itself ends the program: 0 after --help and --version, 2 after a wrong command.
     let result = match Arguments::parse().command {
-        Command::Run { scene, out, quiet } => run(&scene, out, quiet),
+        Command::Run { scene, out, accuracy, quiet } => match accuracy {
+            None => run(&scene, out, quiet),
+            Some(accuracy) => run_to(&scene, out, accuracy, quiet),
+        },
         Command::Check { scene } => check(&scene),
         Command::Study { scene, out, quiet } => commands::study::study(&scene, &out, quiet),
     };
@@ -138,11 +152,16 @@ fn main() -> ExitCode {
 fn load(arguments: &SceneArguments) -> Result<(SceneFile, Scene, Model), Error> {
     let file = SceneFile::read(&arguments.path, &arguments.overrides)?;
     let scene = file.scene()?;
-    let model = Model::new(&scene).map_err(|error| match error {
-        Error::Scene(error) => Error::Scene(file.locate(error)),
-        other => other,
-    })?;
+    let model = Model::new(&scene).map_err(|error| located(&file, error))?;
     Ok((file, scene, model))
+}
+
+fn located(file: &SceneFile, error: Error) -> Error {
+    match error {
+        // Options are in no file.
+        Error::Scene(error) if !error.key.starts_with("--") => Error::Scene(file.locate(error)),
+        other => other,
+    }
 }
 
 fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Failure> {
@@ -164,18 +183,56 @@ fn run(arguments: &SceneArguments, out: PathBuf, quiet: bool) -> Result<(), Fail
         Err(stopped) => (stopped.partial, Some(stopped.error)),
     };
     bar.finish_and_clear();
-    let outcome = Outcome { solution, failure, setup_seconds, solve_seconds: start.elapsed().as_secs_f64() };
+    let solve_seconds = start.elapsed().as_secs_f64();
+    let outcome = Outcome { solution, failure, accuracy: None, setup_seconds, solve_seconds };
+    finish(&out, &scene, outcome)
+}
 
-    if let Err(error) = output::write(&out, &scene, &outcome) {
+/// Solves with settings that reach an accuracy.
+fn run_to(arguments: &SceneArguments, out: PathBuf, accuracy: f64, quiet: bool) -> Result<(), Failure> {
+    let start = Instant::now();
+    let file = SceneFile::read(&arguments.path, &arguments.overrides)?;
+    let scene = file.scene().map_err(Error::from)?;
+    accuracy::check(&scene, accuracy).map_err(|error| located(&file, error))?;
+    refuse_overwriting(&arguments.path, &out)?;
+    output::prepare(&out)?;
+    let setup_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let bar = progress_bar(quiet);
+    let mut progress = |run: usize, done: f64, work: &Statistics| {
+        bar.set_position((1000.0 * done.clamp(0.0, 1.0)) as u64);
+        bar.set_message(format!("run {run}: {}", work_so_far(&scene, done, work)));
+    };
+    let found = accuracy::solve_to(&scene, accuracy, &mut progress);
+    bar.finish_and_clear();
+    let Accurate { scene, solution, report } = found?;
+    let failure = match &report.shortfall {
+        Some(Shortfall::Solver(error)) => Some(error.clone()),
+        _ => None,
+    };
+    let solve_seconds = start.elapsed().as_secs_f64();
+    finish(&out, &scene, Outcome { solution, failure, accuracy: Some(report), setup_seconds, solve_seconds })
+}
+
+/// Writes and reports what came out.
+fn finish(out: &Path, scene: &Scene, outcome: Outcome) -> Result<(), Failure> {
+    if let Err(error) = output::write(out, scene, &outcome) {
         // The error that ends the program says only that a file failed.
-        if let Some(stopped) = &outcome.failure {
-            print_error(stopped);
+        if let Some(message) = outcome.stopped() {
+            print_error(message);
         }
         return Err(error.into());
     }
-    report(&scene, &outcome);
+    report(scene, &outcome);
     say(format_args!("results in {}", out.display()));
-    outcome.failure.map_or(Ok(()), |error| Err(Failure::Stopped(error)))
+    if let Some(error) = outcome.failure {
+        return Err(Failure::Stopped(error));
+    }
+    outcome
+        .accuracy
+        .and_then(|report| report.shortfall)
+        .map_or(Ok(()), |short| Err(Failure::Inaccurate(short)))
 }
 
 fn solve(
@@ -255,7 +312,7 @@ fn list_bodies(model: &Model) {
 fn report(scene: &Scene, outcome: &Outcome) {
     let solution = &outcome.solution;
     let work = &solution.statistics;
-    let status = match outcome.failure {
+    let status = match outcome.stopped() {
         None => "solved",
         Some(_) => "stopped early",
     };
@@ -270,6 +327,9 @@ fn report(scene: &Scene, outcome: &Outcome) {
         work.rejected,
         outcome.setup_seconds + outcome.solve_seconds
     ));
+    if let Some(accuracy) = &outcome.accuracy {
+        say(accuracy);
+    }
     report_energy(scene, solution);
     report_modes(&solution.modes);
     for warning in &solution.warnings {

@@ -9,6 +9,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::accuracy::Report;
 use crate::error::Error;
 use crate::scene::{Analysis, Scene};
 use crate::solution::{Solution, SolveError};
@@ -20,10 +21,20 @@ pub struct Outcome {
     pub solution: Solution,
     /// Why it stopped early; absent when the scene was solved.
     pub failure: Option<SolveError>,
+    /// Where an accuracy was asked for, what is known of the error.
+    pub accuracy: Option<Report>,
     /// Time spent reading the scene and building the model [s].
     pub setup_seconds: f64,
     /// Time spent solving [s].
     pub solve_seconds: f64,
+}
+
+impl Outcome {
+    /// Why there is not what was asked for; absent where there is.
+    pub fn stopped(&self) -> Option<String> {
+        let shortfall = self.accuracy.as_ref().and_then(|report| report.shortfall.as_ref());
+        self.failure.as_ref().map(ToString::to_string).or(shortfall.map(ToString::to_string))
+    }
 }
 
 /// Creates the folder for the results if it is absent, so that a folder that cannot be made is known

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Outcome, Results, cannot_write, write_text};
+use crate::accuracy::Report;
 use crate::error::Error;
 use crate::scene::{Analysis, Scene};
 use crate::solution::Mode;
@@ -22,6 +23,8 @@ struct Summary<'a> {
     most_iterations: usize,
     factorizations: usize,
     residual: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<&'a Report>,
     seconds: Seconds,
     version: &'static str,
     warnings: &'a [String],
@@ -39,9 +42,9 @@ pub(super) fn write(dir: &Path, scene: &Scene, outcome: &Outcome, output_seconds
     let solution = &outcome.solution;
     let results = Results { scene, solution };
     let statistics = &solution.statistics;
-    let (status, message) = match &outcome.failure {
+    let (status, message) = match outcome.stopped() {
         None => ("solved", reached(results)),
-        Some(error) => ("stopped", error.to_string()),
+        Some(message) => ("stopped", message),
     };
     let summary = Summary {
         status,
@@ -55,6 +58,7 @@ pub(super) fn write(dir: &Path, scene: &Scene, outcome: &Outcome, output_seconds
         most_iterations: statistics.most_iterations,
         factorizations: statistics.factorizations,
         residual: statistics.residual,
+        accuracy: outcome.accuracy.as_ref(),
         seconds: Seconds {
             setup: outcome.setup_seconds,
             solve: outcome.solve_seconds,

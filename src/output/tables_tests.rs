@@ -59,7 +59,7 @@ fn outcome() -> Outcome {
         statistics: Statistics { increments: 4, newton_iterations: 12, ..Statistics::default() },
         ..Solution::default()
     };
-    Outcome { solution, failure: None, setup_seconds: 0.1, solve_seconds: 0.2 }
+    Outcome { solution, failure: None, accuracy: None, setup_seconds: 0.1, solve_seconds: 0.2 }
 }
 
 fn lines(folder: &tempfile::TempDir, name: &str) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! The program as its users meet it: exit codes, messages and files.
 
+mod accuracy;
 mod mistakes;
 mod moving;
 mod solver;

@@ -47,6 +47,7 @@ mod reference;
 mod right_angle_cantilever;
 mod roll_up;
 mod rotation_limits;
+mod run_accuracy;
 mod scenes;
 mod spring;
 mod spring_axis;
@@ -123,6 +124,7 @@ pub fn all() -> Vec<Case> {
         reference::all(),
         right_angle_cantilever::all(),
         roll_up::all(),
+        run_accuracy::all(),
         rotation_limits::all(),
         scenes::all(),
         spring_axis::all(),

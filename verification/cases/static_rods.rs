@@ -76,7 +76,7 @@ fn loads(problem: &str) -> Result<Vec<Load>, Box<dyn Error>> {
 }
 
 /// Probes at these ξ.
-fn scene(problem: &str, elements: usize, stations: &[f64]) -> Result<Scene, Box<dyn Error>> {
+pub fn scene(problem: &str, elements: usize, stations: &[f64]) -> Result<Scene, Box<dyn Error>> {
     let helix = CurveShape::Helix { coils: 1.5, radius: 0.3, pitch: 0.25, phase: 0.0 };
     let curve = if problem == "all on a helix" { helix } else { line(LENGTH) };
     Ok(Scene {

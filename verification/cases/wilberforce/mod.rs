@@ -58,6 +58,11 @@ pub fn all() -> Vec<Case> {
     .collect()
 }
 
+/// The pendulum on a wire without inertia, without an analysis.
+pub fn massless() -> Scene {
+    Pendulum { inertia: false, ..Pendulum::new(9, 6) }.scene()
+}
+
 const SHEAR: f64 = 81e9;
 const POISSON: f64 = 0.23;
 const DENSITY: f64 = 7850.0;
