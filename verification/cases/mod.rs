@@ -42,6 +42,7 @@ mod princeton;
 mod probes;
 mod pyelastica_rods;
 mod radau;
+mod radau_work;
 mod reactions;
 mod reference;
 mod right_angle_cantilever;
@@ -57,6 +58,7 @@ mod spring_wire_end;
 mod spring_work;
 mod spun_ring;
 mod static_rods;
+mod step_warnings;
 mod straight_to_helix;
 mod study;
 mod time_steps;
@@ -120,6 +122,7 @@ pub fn all() -> Vec<Case> {
         probes::all(),
         pyelastica_rods::all(),
         radau::all(),
+        radau_work::all(),
         reactions::all(),
         reference::all(),
         right_angle_cantilever::all(),
@@ -134,6 +137,7 @@ pub fn all() -> Vec<Case> {
         spring_work::all(),
         spun_ring::all(),
         static_rods::all(),
+        step_warnings::all(),
         straight_to_helix::all(),
         study::all(),
         time_steps::all(),

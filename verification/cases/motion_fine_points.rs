@@ -93,6 +93,13 @@ fn halved_steps(checks: &mut Checks) -> Outcome {
             20.0,
             "two or more in each of ten steps",
         );
+        checks.below(
+            Kind::Invariant,
+            format!("halvings at most, {}", placement.name),
+            coarse.statistics.rejected as f64,
+            60.0,
+            "parts of a step only get smaller, down to one in 2⁶",
+        );
         let mut worst = 0.0_f64;
         for k in 1..=10 {
             let time = k as f64 * STEP;

@@ -133,6 +133,45 @@ pub fn compare_rows<const N: usize>(worst: &mut Worst, force: &ElementForce<N>, 
     worst.compare_against(list(&force.moment), rows(3..6), largest(&force.moment_scale));
 }
 
+/// Sums of absolute contributions, from the rows that one quadrature point alone makes.
+pub struct Scales<const N: usize> {
+    pub force: [f64; N],
+    pub moment: [f64; N],
+}
+
+impl<const N: usize> Default for Scales<N> {
+    fn default() -> Self {
+        Self { force: [0.0; N], moment: [0.0; N] }
+    }
+}
+
+/// Components `first`… of row i.
+pub fn half(rows: &Rows<Dual64>, i: usize, first: usize) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| rows[i][first + k].re)
+}
+
+impl<const N: usize> Scales<N> {
+    /// The moment rows have two contributions: −N′ m along m, and N (γ̄ × n + κ̄ × m), whose second part is normal to m.
+    fn add(&mut self, rows: &impl Fn(Pair<Dual64>) -> Rows<Dual64>, (n, m): &Pair<Dual64>) {
+        let zero = lift(&Vector3::zeros());
+        let (by_force, by_moment) = (rows((*n, zero)), rows((zero, *m)));
+        let along = m.map(|x| x.re).normalize();
+        for i in 0..N {
+            let turned = half(&by_moment, i, 3);
+            let slope = along * along.dot(&turned);
+            self.force[i] += half(&by_force, i, 0).norm();
+            self.moment[i] += slope.norm() + (half(&by_force, i, 3) + turned - slope).norm();
+        }
+    }
+
+    pub fn compare(&self, worst: &mut Worst, force: &ElementForce<N>) {
+        for (measured, exact) in [(force.force_scale, self.force), (force.moment_scale, self.moment)] {
+            let largest = exact.into_iter().fold(0.0, f64::max);
+            worst.compare_against(measured, exact, if largest > 0.0 { largest } else { 1.0 });
+        }
+    }
+}
+
 fn internal_forces(checks: &mut Checks) -> Outcome {
     for spacing in [NodeSpacing::GaussLobatto, NodeSpacing::Equal] {
         internal::<2, R12>(checks, Ansatz::Matrices, spacing, "R12, p = 1")?;
@@ -148,6 +187,7 @@ fn internal_forces(checks: &mut Checks) -> Outcome {
 #[derive(Default)]
 struct InternalErrors {
     rows: Worst,
+    scales: Worst,
     plain: Worst,
     mixed: Worst,
     advanced: Worst,
@@ -167,6 +207,7 @@ fn internal<const N: usize, I: Interpolation<N>>(
     }
     for (quantity, worst) in [
         ("fⁱⁿᵗ", errors.rows),
+        ("Σ |contribution| to fⁱⁿᵗ", errors.scales),
         ("K at s = ŝ(q)", errors.plain),
         ("K at another s", errors.mixed),
         ("ŝ + C ε′ δq", errors.advanced),
@@ -202,7 +243,14 @@ fn compare_internal<const N: usize, I: Interpolation<N>>(
     let mut force = ElementForce::default();
     internal_force::<N, I>(Plain, &poses, &rule, &reference, &STIFFNESS, &mut constitutive, &mut force)?;
     let still = points_of(&[Increment::default(); N]);
-    compare_rows(&mut errors.rows, &force, &exact(&still, &stresses(&still, &reference)));
+    let laws = stresses(&still, &reference);
+    compare_rows(&mut errors.rows, &force, &exact(&still, &laws));
+    let mut scales = Scales::<N>::default();
+    for q in 0..rule.len() {
+        let of = |s: Pair<Dual64>| formulas::internal_force(places, &weighted[q..=q], &still[q..=q], &[s]);
+        scales.add(&of, &laws[q]);
+    }
+    scales.compare(&mut errors.scales, &force);
 
     // s = ŝ(q): the true derivative.
     let mut tangent = zero_tangent::<N>();

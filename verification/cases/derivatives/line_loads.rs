@@ -7,7 +7,7 @@ use cosserat::quadrature::gauss_legendre;
 use cosserat::scene::NodeSpacing;
 use num_dual::Dual64;
 
-use super::forces::{compare_blocks, compare_rows};
+use super::forces::{Scales, compare_blocks, compare_rows, half};
 use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Ansatz, Pair, Rows, lift};
@@ -31,15 +31,15 @@ fn line<const N: usize, I: Interpolation<N>>(checks: &mut Checks, ansatz: Ansatz
     let quadrature = gauss_legendre((N * N).div_ceil(2));
     let rule = basis_at_rule(&places, &quadrature);
     let weighted: Vec<(f64, f64)> = quadrature.points.into_iter().zip(quadrature.weights).collect();
-    let [mut rows, mut slopes] = [Worst::default(); 2];
+    let [mut rows, mut scales, mut slopes] = [Worst::default(); 3];
     for (seed, angle) in (80..).zip(ANGLES) {
         let mut random = Generator::new(seed);
         let state = ElementState::new(&places, angle, seed);
         let poses = state.poses();
         let jacobians: Vec<f64> = rule.iter().map(|_| 1.0 + 0.3 * random.number()).collect();
         for load in every_load(&mut random) {
-            let exact = |increments: [Increment; N]| -> Rows<Dual64> {
-                let nodes = state.moved(&increments);
+            let pairs = |increments: &[Increment; N]| -> Vec<Pair<Dual64>> {
+                let nodes = state.moved(increments);
                 let at = |&(x, _): &(f64, f64)| -> Pair<Dual64> {
                     let a = formulas::point(ansatz, &places, &nodes, x).rotation;
                     (
@@ -47,12 +47,25 @@ fn line<const N: usize, I: Interpolation<N>>(checks: &mut Checks, ansatz: Ansatz
                         lift(&load.body_moment) + a.transpose() * lift(&load.moment),
                     )
                 };
-                let pairs: Vec<_> = weighted.iter().map(at).collect();
-                formulas::external_force(&places, &weighted, &jacobians, &pairs)
+                weighted.iter().map(at).collect()
+            };
+            let exact = |increments: [Increment; N]| -> Rows<Dual64> {
+                formulas::external_force(&places, &weighted, &jacobians, &pairs(&increments))
             };
             let mut force = ElementForce::default();
             line_load_force::<N, I>(&poses, &rule, &jacobians, &load, &mut force)?;
-            compare_rows(&mut rows, &force, &exact([Increment::default(); N]));
+            let still = [Increment::default(); N];
+            compare_rows(&mut rows, &force, &exact(still));
+            let mut absolute = Scales::<N>::default();
+            for (q, pair) in pairs(&still).into_iter().enumerate() {
+                let (point, jacobian) = (&weighted[q..=q], &jacobians[q..=q]);
+                let alone = formulas::external_force(&places, point, jacobian, &[pair]);
+                for i in 0..N {
+                    absolute.force[i] += half(&alone, i, 0).norm();
+                    absolute.moment[i] += half(&alone, i, 3).norm();
+                }
+            }
+            absolute.compare(&mut scales, &force);
             let mut tangent = zero_tangent::<N>();
             line_load_tangent::<N, I>(&poses, &rule, &jacobians, &load, &mut tangent)?;
             compare_blocks(&mut slopes, &tangent, exact);
@@ -63,7 +76,8 @@ fn line<const N: usize, I: Interpolation<N>>(checks: &mut Checks, ansatz: Ansatz
             checks.absolute(Kind::Invariant, "whether a line load turns", (measured, expected), 0.0, reason);
         }
     }
-    for (quantity, worst) in [("fᵉˣᵗ", rows), ("−∂fᵉˣᵗ/∂q", slopes)] {
+    for (quantity, worst) in [("fᵉˣᵗ", rows), ("Σ |contribution| to fᵉˣᵗ", scales), ("−∂fᵉˣᵗ/∂q", slopes)]
+    {
         checks.below(Kind::Invariant, format!("{quantity}, {name}"), worst.0, ROUNDING, ROUNDING_REASON);
     }
     Ok(())
