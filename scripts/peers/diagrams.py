@@ -2,9 +2,11 @@
 
 import json
 import sys
+from math import ceil, floor, log10
 from pathlib import Path
 
 import matplotlib
+import matplotlib.ticker
 
 matplotlib.use("Agg")
 matplotlib.rcParams.update({
@@ -33,20 +35,25 @@ STYLES = {
 
 
 def panel(axes, problem, runs):
-    title, error, floor = PANELS[problem]
+    title, error, known = PANELS[problem]
     for series, (colour, marker, line) in STYLES.items():
         points = sorted((run["error"], run["seconds"]) for run in runs if run["series"] == series)
         if points:
             axes.plot(*zip(*points), color=colour, marker=marker, linestyle=line, markersize=6, label=series)
-    if floor:
-        axes.axvspan(floor / 100, floor, color="#DDDDDD", zorder=0, linewidth=0)
-        axes.text(floor * 0.87, 0.97, "the reference is no better", rotation=90, ha="right", va="top", fontsize=9,
-                  color="#555555", transform=axes.get_xaxis_transform())
+    if known:
+        axes.axvspan(known / 100, known, color="#DDDDDD", zorder=0, linewidth=0)
+        axes.text(0.985, 0.97, "the reference is no better", rotation=90, ha="right", va="top", fontsize=9,
+                  color="#555555", transform=axes.transAxes)
     axes.set(xscale="log", yscale="log", title=title, xlabel=error, ylabel="processor time of the solve [s]")
     errors = [run["error"] for run in runs]
-    low = min(errors) if not floor else min(min(errors), floor)
+    low = min([*errors, known] if known else errors)
     axes.set_xlim(low / 2.5, max(errors) * 2.5)
     axes.invert_xaxis()
+    # Whole decades, so that every axis has its powers of ten.
+    times = [log10(run["seconds"]) for run in runs]
+    axes.set_ylim(10.0 ** floor(min(times) - 0.1), 10.0 ** ceil(max(times) + 0.1))
+    axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     axes.grid(True, which="major", color="#E5E5E5", linewidth=0.8)
     axes.set_axisbelow(True)
 
