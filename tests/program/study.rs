@@ -95,7 +95,8 @@ fn a_study_shows_the_order_and_advises() {
     assert!(line("for 1e-3: degree 2, ").ends_with('s'), "{}", ended.stdout);
     assert!(line("for 1e-30: ").contains("unknown"), "{}", ended.stdout);
     let picture = read(&out, "study.svg");
-    assert!(picture.contains("Pareto front") && picture.contains("p 2 × 4") && picture.contains(">\narc\n"));
+    // Which of the runs are on it is a matter of time, the most accurate one always.
+    assert!(picture.contains("Pareto front") && picture.contains("p 2 × 16") && picture.contains(">\narc\n"));
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 3, "study.csv, study.json, study.svg");
 }
 
