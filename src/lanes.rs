@@ -1,6 +1,6 @@
 //! Arithmetic of the kernels: small matrices in vector registers, with fused multiply-adds where there are any.
 //!
-//! A kernel is an `#[inline(always)]` function of a [`Processor`]; [`widest!`] compiles its call twice, once for AVX2
+//! A kernel is an `#[inline(always)]` function of a [`Processor`]; `widest!` compiles its call twice, once for AVX2
 //! and FMA, and chooses when it runs. The two differ by rounding; one machine always takes the same.
 
 #[cfg(target_arch = "x86_64")]
