@@ -184,7 +184,7 @@ impl fmt::Display for Reached {
 }
 
 /// What ended the refinement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Reason {
     /// Of all runs together.
     #[error("another run would take the work beyond {MOST_WORK:e} Newton iterations times unknowns")]
@@ -197,9 +197,9 @@ pub enum Reason {
         "finer runs come no nearer to each other, down at rounding and the tolerance of Newton's iteration"
     )]
     Noise,
-    /// A limit of the scene: given poses must be as many as nodes.
-    #[error("the scene admits no finer mesh or step")]
-    Limit,
+    /// A limit of the scene: nodes may not be more than samples to fit.
+    #[error("the scene admits nothing finer: {0}")]
+    Limit(String),
     /// Newton's iteration on them.
     #[error("runs with finer meshes or steps fail")]
     Failures,

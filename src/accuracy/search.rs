@@ -189,8 +189,8 @@ impl<'a> Search<'a> {
                     }
                     next = self.plan.finer(&climb.level, refined);
                 }
-                Err(Stop::Setup(_)) if climb.trajectory.is_some() => {
-                    return Climb { halt: Some(Halt::Reason(Reason::Limit)), ..climb };
+                Err(Stop::Setup(error)) if climb.trajectory.is_some() => {
+                    return Climb { halt: Some(Halt::Reason(Reason::Limit(error.to_string()))), ..climb };
                 }
                 Err(stop) => {
                     sequence.clear();

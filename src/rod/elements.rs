@@ -19,7 +19,7 @@ use crate::fit;
 use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
 use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
 use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
-use crate::lanes::{Processor, widest};
+use crate::lanes::{Processor, vector, widest};
 use crate::quadrature::gauss_legendre;
 use crate::scene::{NodeSpacing, QuadratureKind};
 use crate::state::State;
@@ -342,14 +342,16 @@ where
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
             for basis in &self.rule {
-                let strain = I::strain(nodes, basis).map_err(|_| e)?;
+                // As the forces compute it: strains at rest are zero, not rounding.
+                let (strain, _) = widest!(processor => I::point(processor, nodes, basis)).map_err(|_| e)?;
+                let (rotation, gamma) = (Matrix3::from(strain.rotation), vector(&strain.gamma));
                 // ‖r⁰′‖ = ‖A⁻ᵀ γ̄‖: A is not quite orthogonal between the nodes.
-                let inverse = strain.rotation.transpose().try_inverse().ok_or(e)?;
-                let jacobian = (inverse * strain.gamma).norm();
-                if !(strain.rotation.determinant() > 1e-3 && jacobian > 0.0) {
+                let inverse = rotation.transpose().try_inverse().ok_or(e)?;
+                let jacobian = (inverse * gamma).norm();
+                if !(rotation.determinant() > 1e-3 && jacobian > 0.0) {
                     return Err(e);
                 }
-                let (gamma, kappa) = (strain.gamma / jacobian, strain.kappa / jacobian);
+                let (gamma, kappa) = (gamma / jacobian, vector(&strain.kappa) / jacobian);
                 result.points.push(ReferencePoint { jacobian, gamma, kappa });
             }
             for basis in self.full_rule.iter().filter(|_| full) {

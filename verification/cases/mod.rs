@@ -58,6 +58,7 @@ mod spring_wire_end;
 mod spring_work;
 mod spun_ring;
 mod static_rods;
+mod step_warnings;
 mod straight_to_helix;
 mod study;
 mod time_steps;
@@ -136,6 +137,7 @@ pub fn all() -> Vec<Case> {
         spring_work::all(),
         spun_ring::all(),
         static_rods::all(),
+        step_warnings::all(),
         straight_to_helix::all(),
         study::all(),
         time_steps::all(),

@@ -61,7 +61,7 @@ impl Problem {
     }
 
     pub fn fitted(&self) -> Self {
-        self.with("fitted", |rod| rod.reference = Reference::Fit { samples: 41 })
+        self.with("fitted", |rod| rod.reference = Reference::Fit { samples: 121 })
     }
 
     pub fn fully_integrated(&self) -> Self {
