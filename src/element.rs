@@ -6,9 +6,11 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
+use crate::interpolation::{HalfTurn, HalfTurnIn, Increments, Interpolation, Nodes, Pose, Strains};
 use crate::lagrange::Basis;
-use crate::lanes::{Columns, Processor, lanes, product, times, vector};
+use crate::lanes::{
+    LANES, Matrix, Processor, Vector, Wide, cross, gather, norm, plus_scaled, product, scatter, sum, times,
+};
 use crate::linear_solver::NODE;
 
 /// Diagonal stiffness of a cross-section: K_γ = diag(EA, GA_y, GA_z) [N], K_κ = diag(GI_p, EI_y, EI_z) [N m²].
@@ -64,6 +66,43 @@ impl<const N: usize> Default for ElementForce<N> {
     }
 }
 
+/// The same of four elements, side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Forces<const N: usize> {
+    /// Force rows.
+    pub force: [Vector; N],
+    /// Moment rows.
+    pub moment: [Vector; N],
+    /// Σ |contribution| of the force rows.
+    pub force_scale: [Wide; N],
+    /// Σ |contribution| of the moment rows.
+    pub moment_scale: [Wide; N],
+}
+
+impl<const N: usize> Default for Forces<N> {
+    fn default() -> Self {
+        Self {
+            force: [Vector::default(); N],
+            moment: [Vector::default(); N],
+            force_scale: [Wide::default(); N],
+            moment_scale: [Wide::default(); N],
+        }
+    }
+}
+
+impl<const N: usize> Forces<N> {
+    /// Those of a lane.
+    #[inline(always)]
+    pub fn of_lane(&self, lane: usize) -> ElementForce<N> {
+        ElementForce {
+            force: std::array::from_fn(|i| scatter(&self.force[i], lane)),
+            moment: std::array::from_fn(|i| scatter(&self.moment[i], lane)),
+            force_scale: self.force_scale.map(|x| x.0[lane]),
+            moment_scale: self.moment_scale.map(|x| x.0[lane]),
+        }
+    }
+}
+
 /// Blocks K_ij = −∂f_i/∂(δr, δφ)_j.
 pub type ElementTangent<const N: usize> = [[Matrix6<f64>; N]; N];
 
@@ -71,6 +110,54 @@ pub type ElementTangent<const N: usize> = [[Matrix6<f64>; N]; N];
 pub fn zero_tangent<const N: usize>() -> ElementTangent<N> {
     [[Matrix6::zeros(); N]; N]
 }
+
+/// A 6×6 matrix of four elements, column by column.
+pub type Block = [[Wide; NODE]; NODE];
+
+/// The tangents of four elements, side by side.
+pub type Tangents<const N: usize> = [[Block; N]; N];
+
+/// Tangents of zeros.
+pub fn zero_tangents<const N: usize>() -> Tangents<N> {
+    [[[[Wide::default(); NODE]; NODE]; N]; N]
+}
+
+/// Writes the block of a lane.
+#[inline(always)]
+pub fn write_lane_of_block(block: &Block, lane: usize, result: &mut Matrix6<f64>) {
+    for (column, result) in block.iter().zip(&mut result.data.0) {
+        for (x, result) in column.iter().zip(result) {
+            *result = x.0[lane];
+        }
+    }
+}
+
+/// The tangent of a lane.
+pub fn tangent_of_lane<const N: usize>(tangents: &Tangents<N>, lane: usize) -> ElementTangent<N> {
+    let mut tangent = zero_tangent();
+    for (block, result) in tangents.iter().flatten().zip(tangent.iter_mut().flatten()) {
+        write_lane_of_block(block, lane, result);
+    }
+    tangent
+}
+
+/// Puts the tangent of a lane back.
+pub fn set_tangent_of_lane<const N: usize>(
+    tangents: &mut Tangents<N>,
+    lane: usize,
+    tangent: &ElementTangent<N>,
+) {
+    for (blocks, parts) in tangents.iter_mut().flatten().zip(tangent.iter().flatten()) {
+        for (column, part) in blocks.iter_mut().zip(&parts.data.0) {
+            for (x, part) in column.iter_mut().zip(part) {
+                x.0[lane] = *part;
+            }
+        }
+    }
+}
+
+/// Quadrature points of four elements: where those of each start among the points of the rod.
+pub type Starts = [usize; LANES];
 
 impl Stiffness {
     /// n = K_γ (γ − γ⁰), m = K_κ (κ − κ⁰), eq. (18), from strains per element coordinate.
@@ -83,36 +170,137 @@ impl Stiffness {
     }
 }
 
-/// Adds fⁱⁿᵗ, eq. (11): f_r,i = −∫ N_i′ A n dx, f_φ,i = −∫ N_i′ m − N_i (γ̄ × n + κ̄ × m) dx,
-/// and writes the constitutive stress at every quadrature point.
+/// J, γ⁰, κ⁰ at a point of four elements.
+#[inline(always)]
+fn reference_at(points: &[ReferencePoint], starts: &Starts, q: usize) -> (Wide, Vector, Vector) {
+    let of: [&ReferencePoint; LANES] = starts.map(|start| &points[start + q]);
+    (Wide::gather(|lane| of[lane].jacobian), gather(|lane| &of[lane].gamma), gather(|lane| &of[lane].kappa))
+}
+
+/// n and m at a point of four elements.
+#[inline(always)]
+fn stress_at(stresses: &[Stress], starts: &Starts, q: usize) -> (Vector, Vector) {
+    let of: [&Stress; LANES] = starts.map(|start| &stresses[start + q]);
+    (gather(|lane| &of[lane].force), gather(|lane| &of[lane].moment))
+}
+
+#[inline(always)]
+fn set_stress_at(stresses: &mut [Stress], starts: &Starts, q: usize, (force, moment): (&Vector, &Vector)) {
+    for (lane, start) in starts.iter().enumerate() {
+        stresses[start + q] = Stress { force: scatter(force, lane), moment: scatter(moment, lane) };
+    }
+}
+
+/// The stiffnesses in all lanes.
+#[inline(always)]
+fn splat(stiffness: &Vector3<f64>) -> Vector {
+    [stiffness.x, stiffness.y, stiffness.z].map(Wide::splat)
+}
+
+/// C (ε̄/J − ε⁰), eq. (18).
+#[inline(always)]
+fn law(
+    processor: impl Processor,
+    stiffness: &Vector,
+    (strain, jacobian): (&Vector, Wide),
+    reference: &Vector,
+) -> Vector {
+    let mut stress = *strain;
+    for k in 0..3 {
+        let strain = processor.divide(strain[k], jacobian);
+        stress[k] = processor.multiply(stiffness[k], processor.subtract(strain, reference[k]));
+    }
+    stress
+}
+
+/// fⁱⁿᵗ, eq. (11), of four elements: f_r,i = −∫ N_i′ A n dx, f_φ,i = −∫ N_i′ m − N_i (γ̄ × n + κ̄ × m) dx;
+/// writes the constitutive stress (18) at every quadrature point. `reference` and `stresses` are those of the rod.
 #[inline(always)]
 pub fn internal_force<const N: usize, I: Interpolation<N>>(
     processor: impl Processor,
-    nodes: &[Pose; N],
+    nodes: &Nodes<N>,
     rule: &[Basis<N>],
-    reference: &[ReferencePoint],
+    (reference, starts): (&[ReferencePoint], &Starts),
     stiffness: &Stiffness,
     stresses: &mut [Stress],
-    result: &mut ElementForce<N>,
-) -> Result<(), HalfTurn> {
-    for ((basis, reference), stress) in rule.iter().zip(reference).zip(stresses) {
-        let (strain, _) = I::point(processor, nodes, basis)?;
-        *stress = stiffness.stress(&vector(&strain.gamma), &vector(&strain.kappa), reference);
-        let force = vector(&strain.rotation.times_vector(processor, &lanes(&stress.force)));
-        let couple = vector(&strain.gamma).cross(&stress.force) + vector(&strain.kappa).cross(&stress.moment);
-        let (force_norm, moment_norm, couple_norm) = (force.norm(), stress.moment.norm(), couple.norm());
+) -> Result<Forces<N>, HalfTurnIn> {
+    let mut result = Forces::default();
+    let [force_stiffness, moment_stiffness] = [&stiffness.force, &stiffness.moment].map(splat);
+    for (q, basis) in rule.iter().enumerate() {
+        let (strains, _) = I::point(processor, nodes, basis)?;
+        let (jacobian, gamma, kappa) = reference_at(reference, starts, q);
+        let n = law(processor, &force_stiffness, (&strains.gamma, jacobian), &gamma);
+        let m = law(processor, &moment_stiffness, (&strains.kappa, jacobian), &kappa);
+        set_stress_at(stresses, starts, q, (&n, &m));
+        let force = strains.rotation.times_vector(processor, &n);
+        let (by_force, by_moment) =
+            (cross(processor, &strains.gamma, &n), cross(processor, &strains.kappa, &m));
+        let couple = sum(processor, &by_force, &by_moment);
+        let (force_norm, moment_norm) = (norm(processor, &force), norm(processor, &m));
+        let couple_norm = norm(processor, &couple);
         for i in 0..N {
             let (value, slope) = (basis.weight * basis.value[i], basis.weight * basis.derivative[i]);
-            result.force[i] -= slope * force;
-            result.moment[i] += value * couple - slope * stress.moment;
-            result.force_scale[i] += slope.abs() * force_norm;
-            result.moment_scale[i] += slope.abs() * moment_norm + value.abs() * couple_norm;
+            result.force[i] = plus_scaled(processor, &result.force[i], -slope, &force);
+            let moment = plus_scaled(processor, &result.moment[i], value, &couple);
+            result.moment[i] = plus_scaled(processor, &moment, -slope, &m);
+            let (value, slope) = (Wide::splat(value.abs()), Wide::splat(slope.abs()));
+            result.force_scale[i] = processor.multiply_add(slope, force_norm, result.force_scale[i]);
+            let scale = processor.multiply_add(slope, moment_norm, result.moment_scale[i]);
+            result.moment_scale[i] = processor.multiply_add(value, couple_norm, scale);
         }
     }
-    Ok(())
+    Ok(result)
 }
 
-/// Writes the tangent of the internal force; the geometric part is built from the given `stresses`.
+/// What the tangent takes from a point.
+#[derive(Clone, Copy, Debug, Default)]
+struct TangentPoint<P> {
+    point: P,
+    /// w n.
+    force: Vector,
+    /// w A K_γ/J.
+    rotated_stiffness: Matrix,
+    /// w U.
+    from_gamma: Matrix,
+    /// w V.
+    from_kappa: Matrix,
+    /// w K_κ/J.
+    moment_stiffness: Vector,
+    /// w A K_γ/J G.
+    force_by_translation: Matrix,
+    /// w U G.
+    couple_by_translation: Matrix,
+}
+
+/// What a node j contributes at a point to the blocks K_ij of all i: rows by N_i′ and by N_i.
+#[derive(Clone, Copy, Debug, Default)]
+struct TangentColumns {
+    /// N_j′ w A K_γ/J G.
+    force_by_translation: Matrix,
+    /// N_j′ w U G.
+    couple_by_translation: Matrix,
+    /// w (A K_γ/J Γ_j + ∂(A n)/∂φ_j).
+    force_by_rotation: Matrix,
+    /// w K_κ/J X_j.
+    moment_by_rotation: Matrix,
+    /// w (U Γ_j + V X_j).
+    couple_by_rotation: Matrix,
+}
+
+/// Memory for [`internal_tangent`], for N points at a time.
+#[derive(Clone, Debug)]
+pub struct TangentScratch<const N: usize, P> {
+    points: [TangentPoint<P>; N],
+    columns: [TangentColumns; N],
+}
+
+impl<const N: usize, P: Copy + Default> Default for TangentScratch<N, P> {
+    fn default() -> Self {
+        Self { points: [TangentPoint::default(); N], columns: [TangentColumns::default(); N] }
+    }
+}
+
+/// Writes the tangents of the internal force of four elements; the geometric part is built from the given `stresses`.
 ///
 /// With δn = K_γ δγ̄/J, δm = K_κ δκ̄/J:
 /// −δf_r,i = ∫ N_i′ (A δn + δA n), −δf_φ,i = ∫ N_i′ δm − N_i (γ̄ × δn − n × δγ̄ + κ̄ × δm − m × δκ̄).
@@ -123,90 +311,168 @@ pub fn internal_force<const N: usize, I: Interpolation<N>>(
 /// K_ij = ⎛ N_i′ N_j′ A K_γ/J G   N_i′ (A K_γ/J Γ_j + ∂(A n)/∂φ_j)        ⎞
 ///        ⎝ N_i  N_j′ U G         N_i′ K_κ/J X_j + N_i (U Γ_j + V X_j)    ⎠
 /// ```
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub fn internal_tangent<const N: usize, I: Interpolation<N>>(
     processor: impl Processor,
-    nodes: &[Pose; N],
+    nodes: &Nodes<N>,
     rule: &[Basis<N>],
-    reference: &[ReferencePoint],
+    (reference, starts): (&[ReferencePoint], &Starts),
     stiffness: &Stiffness,
     stresses: &[Stress],
-    tangent: &mut ElementTangent<N>,
-) -> Result<(), HalfTurn> {
-    let mut first = true;
-    for ((basis, reference), stress) in rule.iter().zip(reference).zip(stresses) {
-        let (strain, point) = I::point(processor, nodes, basis)?;
-        let scale = basis.weight / reference.jacobian;
-        let (force_stiffness, moment_stiffness) = (stiffness.force * scale, stiffness.moment * scale);
-        let force = lanes(&(stress.force * basis.weight));
-        let moment = lanes(&(stress.moment * basis.weight));
-        let rotated_stiffness = strain.rotation.times_diagonal(&force_stiffness);
-        let from_gamma = Columns::skew(&force).plus_scaled(
-            processor,
-            -1.0,
-            &Columns::skew(&strain.gamma).times_diagonal(&force_stiffness),
-        );
-        let from_kappa = Columns::skew(&moment).plus_scaled(
-            processor,
-            -1.0,
-            &Columns::skew(&strain.kappa).times_diagonal(&moment_stiffness),
-        );
-        let moment_stiffness = lanes(&moment_stiffness);
-        let force_r = rotated_stiffness.times(processor, &strain.gamma_translation);
-        let couple_r = from_gamma.times(processor, &strain.gamma_translation);
-        let by_translation = stacked(&force_r, &couple_r);
+    scratch: &mut TangentScratch<N, I::Point>,
+    tangents: &mut Tangents<N>,
+) -> Result<(), HalfTurnIn> {
+    for (pass, rule) in rule.chunks(N).enumerate() {
+        for (q, (basis, place)) in rule.iter().zip(&mut scratch.points).enumerate() {
+            let (strains, point) = I::point(processor, nodes, basis)?;
+            let (jacobian, ..) = reference_at(reference, starts, pass * N + q);
+            let stress = stress_at(stresses, starts, pass * N + q);
+            write_point(processor, (&strains, point), basis.weight, jacobian, stiffness, &stress, place);
+        }
         for j in 0..N {
-            let node = (j, &nodes[j], basis);
-            let kappa = I::kappa_rotation(processor, &point, node);
-            let [force_phi, couple_phi] =
-                I::gamma_rotation(processor, &point, node, [&rotated_stiffness, &from_gamma]);
-            let force_phi =
-                force_phi.plus_scaled(processor, 1.0, &I::turned(processor, &point, node, &force));
-            let p = stacked(&force_phi, &kappa.diagonal_times(&moment_stiffness));
-            let couple_phi = couple_phi.plus_product(processor, &from_kappa, &kappa);
-            let q = stacked(&couple_phi, &couple_phi);
-            // Not N_i′ N_j′ first: its rounding, the same in every element, would hold a long rod like springs.
-            let mut translation = by_translation;
-            for column in &mut translation {
-                *column = times(basis.derivative[j], column);
+            for ((basis, point), columns) in rule.iter().zip(&scratch.points).zip(&mut scratch.columns) {
+                write_columns::<N, I>(processor, point, (j, nodes, basis), columns);
             }
             for i in 0..N {
-                let (value, slope) = (basis.value[i], basis.derivative[i]);
-                let by_row = [slope, slope, slope, value, value, value];
-                let lower = [0.0, 0.0, 0.0, value, value, value];
-                let block = columns(&mut tangent[i][j]);
-                for c in 0..3 {
-                    if first {
-                        block[c] = product(&by_row, &translation[c]);
-                        block[3 + c] = times(slope, &p[c]);
-                    } else {
-                        processor.add_products6(&mut block[c], &by_row, &translation[c]);
-                        processor.add_scaled6(&mut block[3 + c], slope, &p[c]);
-                    }
-                    processor.add_products6(&mut block[3 + c], &lower, &q[c]);
-                }
+                add_block(processor, i, rule, &scratch.columns, pass == 0, &mut tangents[i][j]);
             }
         }
-        first = false;
     }
     Ok(())
 }
 
-/// Three columns of a block from its upper and its lower half.
+/// s̃ − ε̃ diag(C).
 #[inline(always)]
-fn stacked(upper: &Columns, lower: &Columns) -> [[f64; NODE]; 3] {
-    let mut result = [[0.0; NODE]; 3];
+fn skew_less_stiffness(processor: impl Processor, s: &Vector, strain: &Vector, stiffness: &Vector) -> Matrix {
+    let stiff = Matrix::skew(processor, strain).times_diagonal(processor, stiffness);
+    Matrix::skew(processor, s).plus_scaled(processor, -1.0, &stiff)
+}
+
+// The large parts are written where they are kept: moved, they would be copied.
+
+#[inline(always)]
+fn write_point<P>(
+    processor: impl Processor,
+    (strains, point): (&Strains, P),
+    weight: f64,
+    jacobian: Wide,
+    stiffness: &Stiffness,
+    (n, m): &(Vector, Vector),
+    at: &mut TangentPoint<P>,
+) {
+    let scale = processor.divide(Wide::splat(weight), jacobian);
+    let force_stiffness = product(processor, &splat(&stiffness.force), &[scale; 3]);
+    let moment_stiffness = product(processor, &splat(&stiffness.moment), &[scale; 3]);
+    let (force, moment) = (times(processor, weight, n), times(processor, weight, m));
+    let rotated_stiffness = strains.rotation.times_diagonal(processor, &force_stiffness);
+    let from_gamma = skew_less_stiffness(processor, &force, &strains.gamma, &force_stiffness);
+    at.point = point;
+    at.force = force;
+    at.moment_stiffness = moment_stiffness;
+    at.force_by_translation = rotated_stiffness.times(processor, &strains.gamma_translation);
+    at.couple_by_translation = from_gamma.times(processor, &strains.gamma_translation);
+    at.rotated_stiffness = rotated_stiffness;
+    at.from_gamma = from_gamma;
+    at.from_kappa = skew_less_stiffness(processor, &moment, &strains.kappa, &moment_stiffness);
+}
+
+#[inline(always)]
+fn write_columns<const N: usize, I: Interpolation<N>>(
+    processor: impl Processor,
+    at: &TangentPoint<I::Point>,
+    node: (usize, &Nodes<N>, &Basis<N>),
+    columns: &mut TangentColumns,
+) {
+    let (j, _, basis) = node;
+    // Not N_i′ N_j′ first: its rounding, the same in every element, would hold a long rod like springs.
+    columns.force_by_translation = at.force_by_translation.scaled(processor, basis.derivative[j]);
+    columns.couple_by_translation = at.couple_by_translation.scaled(processor, basis.derivative[j]);
+    let kappa = I::kappa_rotation(processor, &at.point, node);
+    columns.moment_by_rotation = kappa.diagonal_times(processor, &at.moment_stiffness);
+    let [force, couple] =
+        I::gamma_rotation(processor, &at.point, node, [&at.rotated_stiffness, &at.from_gamma]);
+    columns.couple_by_rotation = couple.plus_product(processor, &at.from_kappa, &kappa);
+    let turned = I::turned(processor, &at.point, node, &at.force);
+    columns.force_by_rotation = force.plus_scaled(processor, 1.0, &turned);
+}
+
+#[inline(always)]
+fn multiply_onto(processor: impl Processor, sum: &mut Wide, a: Wide, b: Wide) {
+    *sum = processor.multiply_add(a, b, *sum);
+}
+
+/// Sums one block over points; `first` writes.
+#[inline(always)]
+fn add_block<const N: usize>(
+    processor: impl Processor,
+    i: usize,
+    rule: &[Basis<N>],
+    columns: &[TangentColumns; N],
+    first: bool,
+    block: &mut Block,
+) {
     for c in 0..3 {
-        let (u, l) = (&upper.0[c], &lower.0[c]);
-        result[c] = [u[0], u[1], u[2], l[0], l[1], l[2]];
+        let (mut by_translation, mut by_rotation) =
+            if first { Default::default() } else { (block[c], block[3 + c]) };
+        for (basis, part) in rule.iter().zip(columns) {
+            let (value, slope) = (Wide::splat(basis.value[i]), Wide::splat(basis.derivative[i]));
+            for r in 0..3 {
+                multiply_onto(processor, &mut by_translation[r], slope, part.force_by_translation.0[c][r]);
+                multiply_onto(
+                    processor,
+                    &mut by_translation[3 + r],
+                    value,
+                    part.couple_by_translation.0[c][r],
+                );
+                multiply_onto(processor, &mut by_rotation[r], slope, part.force_by_rotation.0[c][r]);
+                multiply_onto(processor, &mut by_rotation[3 + r], slope, part.moment_by_rotation.0[c][r]);
+                multiply_onto(processor, &mut by_rotation[3 + r], value, part.couple_by_rotation.0[c][r]);
+            }
+        }
+        (block[c], block[3 + c]) = (by_translation, by_rotation);
+    }
+}
+
+/// s + C δε̄/J.
+#[inline(always)]
+fn advanced(
+    processor: impl Processor,
+    stress: &Vector,
+    stiffness: &Vector,
+    (change, jacobian): (&Vector, Wide),
+) -> Vector {
+    let mut result = *stress;
+    for k in 0..3 {
+        let change = processor.divide(change[k], jacobian);
+        result[k] = processor.multiply_add(stiffness[k], change, stress[k]);
     }
     result
 }
 
-/// The columns of a block.
+/// s ← ŝ(q) + C ε′(q) δq: the stress iterates of four elements after a step, with the old q.
+#[allow(clippy::too_many_arguments)]
 #[inline(always)]
-pub(crate) fn columns(block: &mut Matrix6<f64>) -> &mut [[f64; NODE]; NODE] {
-    &mut block.data.0
+pub fn advance_stress<const N: usize, I: Interpolation<N>>(
+    processor: impl Processor,
+    nodes: &Nodes<N>,
+    rule: &[Basis<N>],
+    (reference, starts): (&[ReferencePoint], &Starts),
+    stiffness: &Stiffness,
+    increments: &Increments<N>,
+    constitutive: &[Stress],
+    stresses: &mut [Stress],
+) -> Result<(), HalfTurnIn> {
+    let [force_stiffness, moment_stiffness] = [&stiffness.force, &stiffness.moment].map(splat);
+    for (q, basis) in rule.iter().enumerate() {
+        let (gamma, kappa) = I::strain_increment(processor, nodes, basis, increments)?;
+        let (jacobian, ..) = reference_at(reference, starts, q);
+        let (n, m) = stress_at(constitutive, starts, q);
+        let n = advanced(processor, &n, &force_stiffness, (&gamma, jacobian));
+        let m = advanced(processor, &m, &moment_stiffness, (&kappa, jacobian));
+        set_stress_at(stresses, starts, q, (&n, &m));
+    }
+    Ok(())
 }
 
 /// Adds a 3×3 matrix to a 6×6 block.
@@ -214,30 +480,6 @@ pub(crate) fn columns(block: &mut Matrix6<f64>) -> &mut [[f64; NODE]; NODE] {
 fn add(block: &mut Matrix6<f64>, row: usize, column: usize, part: &Matrix3<f64>) {
     let mut view = block.fixed_view_mut::<3, 3>(row, column);
     view += part;
-}
-
-/// s ← ŝ(q) + C ε′(q) δq: the stress iterate of the mixed iteration after a step, with the old q.
-#[allow(clippy::too_many_arguments)]
-#[inline(always)]
-pub fn advance_stress<const N: usize, I: Interpolation<N>>(
-    processor: impl Processor,
-    nodes: &[Pose; N],
-    rule: &[Basis<N>],
-    reference: &[ReferencePoint],
-    stiffness: &Stiffness,
-    increments: &[Increment; N],
-    constitutive: &[Stress],
-    stresses: &mut [Stress],
-) -> Result<(), HalfTurn> {
-    for (((basis, reference), constitutive), stress) in
-        rule.iter().zip(reference).zip(constitutive).zip(stresses)
-    {
-        let (gamma, kappa) = I::strain_increment(processor, nodes, basis, increments)?;
-        let inverse = 1.0 / reference.jacobian;
-        stress.force = constitutive.force + stiffness.force.component_mul(&(vector(&gamma) * inverse));
-        stress.moment = constitutive.moment + stiffness.moment.component_mul(&(vector(&kappa) * inverse));
-    }
-    Ok(())
 }
 
 /// Loads per reference length, in either basis; all constant along the rod.

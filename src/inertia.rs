@@ -7,8 +7,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::element::{ElementForce, ElementTangent};
+use crate::element::{ElementForce, Tangents};
 use crate::lagrange::Basis;
+use crate::lanes::{LANES, Matrix, Processor, Vector, Wide, gather, plus_scaled, product, sum, times};
 use crate::rotation::skew;
 use crate::section::SectionInertia;
 
@@ -120,50 +121,89 @@ pub fn inertia_force<const N: usize>(
     }
 }
 
-/// Turns the tangent K of the forces into that of an implicit step, times b²:
+/// J at the points of the rule and m_ij of an element.
+#[derive(Clone, Copy, Debug)]
+pub struct ElementMass<'a, const N: usize> {
+    /// J [m].
+    pub jacobians: &'a [f64],
+    /// m_ij [m].
+    pub coefficients: &'a [[f64; N]; N],
+}
+
+/// Turns the tangents K of the forces on four elements into those of an implicit step, times b²:
 /// b² K + (M + b D) diag(1, Y_j⁻¹), D_ij = ∂fᵍʸʳ_i/∂ω_j = ∫ N_i N_j (ω̃ I_ρ0 − (I_ρ0 ω)~) J dx.
 ///
 /// The step ties accelerations and velocities to the new pose: δu̇ = δu/b, δv_j = δr_j/b, δω_j = Y_j⁻¹ δφ_j/b (see
 /// [`spin_from_turn`]); `b` is in seconds. The matrix under the integral is linear in ω (see [`gyroscopic_tangent`]),
 /// so that the vector ∫ N_i N_j ω J dx of a pair of nodes is all that has to be summed over the points.
 #[inline(always)]
-pub fn inertia_tangent<const N: usize>(
+pub fn inertia_tangents<const N: usize>(
+    processor: impl Processor,
     rule: &[Basis<N>],
-    jacobians: &[f64],
-    mass: &[[f64; N]; N],
+    masses: &[ElementMass<N>; LANES],
     section: &SectionInertia,
-    velocities: &[Velocity; N],
+    velocities: [&[Velocity; N]; LANES],
     b: f64,
-    tangent: &mut ElementTangent<N>,
+    tangents: &mut Tangents<N>,
 ) {
+    let omega: [Vector; N] = std::array::from_fn(|j| gather(|lane| &velocities[lane][j].rotation));
     // For i ≤ j only: it is symmetric.
-    let mut spins = [[Vector3::zeros(); N]; N];
-    for (basis, jacobian) in rule.iter().zip(jacobians) {
-        let omega = spin(basis, velocities) * (basis.weight * jacobian * b);
+    let mut spins = [[Vector::default(); N]; N];
+    for (q, basis) in rule.iter().enumerate() {
+        let jacobian = Wide::gather(|lane| masses[lane].jacobians[q]);
+        let mut spin = times(processor, basis.value[0], &omega[0]);
+        for j in 1..N {
+            spin = plus_scaled(processor, &spin, basis.value[j], &omega[j]);
+        }
+        let spin = product(processor, &spin, &[processor.scale(basis.weight * b, jacobian); 3]);
         for i in 0..N {
-            let weighted = omega * basis.value[i];
+            let weighted = times(processor, basis.value[i], &spin);
             for j in i..N {
-                spins[i][j] += weighted * basis.value[j];
+                spins[i][j] = plus_scaled(processor, &spins[i][j], basis.value[j], &weighted);
             }
         }
     }
-    let square = b * b;
+    let rotary = [section.rotary.x, section.rotary.y, section.rotary.z];
+    let differences = [rotary[2] - rotary[1], rotary[0] - rotary[2], rotary[1] - rotary[0]];
     for j in 0..N {
-        let turn = spin_from_turn(&velocities[j].rotation, b);
+        let turn = turn_by_spin(processor, &omega[j], b);
         for i in 0..N {
-            let mut rotary = gyroscopic_tangent(&section.rotary, &spins[i.min(j)][i.max(j)]);
-            for k in 0..3 {
-                rotary[(k, k)] += mass[i][j] * section.rotary[k];
+            let mass = Wide::gather(|lane| masses[lane].coefficients[i][j]);
+            let [x, y, z] = spins[i.min(j)][i.max(j)];
+            let [dx, dy, dz] = differences;
+            let gyroscopic = Matrix([
+                [processor.scale(rotary[0], mass), processor.scale(dy, z), processor.scale(dz, y)],
+                [processor.scale(dx, z), processor.scale(rotary[1], mass), processor.scale(dz, x)],
+                [processor.scale(dx, y), processor.scale(dy, x), processor.scale(rotary[2], mass)],
+            ]);
+            let change = gyroscopic.times(processor, &turn);
+            let block = &mut tangents[i][j];
+            for column in block.iter_mut() {
+                for x in column {
+                    *x = processor.scale(b * b, *x);
+                }
             }
-            let block = &mut tangent[i][j];
-            *block *= square;
             for k in 0..3 {
-                block[(k, k)] += mass[i][j] * section.mass_per_length;
+                let density = Wide::splat(section.mass_per_length);
+                block[k][k] = processor.multiply_add(density, mass, block[k][k]);
+                for row in 0..3 {
+                    block[3 + k][3 + row] = processor.add(block[3 + k][3 + row], change.0[k][row]);
+                }
             }
-            let mut view = block.fixed_view_mut::<3, 3>(3, 3);
-            view += rotary * turn;
         }
     }
+}
+
+/// [`spin_from_turn`] of four nodes.
+#[inline(always)]
+fn turn_by_spin(processor: impl Processor, omega: &Vector, b: f64) -> Matrix {
+    let y = times(processor, 0.5 * b, omega);
+    let mut turn = Matrix::skew(processor, &y);
+    for k in 0..3 {
+        turn.0[k][k] = Wide::splat(1.0);
+        turn.0[k] = sum(processor, &turn.0[k], &product(processor, &y, &[y[k]; 3]));
+    }
+    turn
 }
 
 /// ½ uᵀ M u [J] = ½ Σ m_ij (A_ρ0 v_i·v_j + ω_i·I_ρ0 ω_j).

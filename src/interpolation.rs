@@ -11,7 +11,9 @@ use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
 use crate::lagrange::Basis;
-use crate::lanes::{Columns, Lanes, Processor, lanes, times, vector};
+use crate::lanes::{
+    LANES, Matrix, Processor, Vector, Wide, difference, gather, plus_scaled, scatter, sum, times,
+};
 use crate::rotation::{
     Twist, TwistMap, axial, exp_se3, log_se3, polar_rotation, right_jacobian_inverse_se3, right_jacobian_se3,
     skew,
@@ -46,17 +48,64 @@ pub struct Strain {
     pub kappa: Vector3<f64>,
 }
 
-/// A, γ̄ and κ̄ at a point, as in [`Strain`], and how the translations of the nodes strain it there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrainLanes {
+/// The nodes of four elements, side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes<'a, const N: usize> {
+    /// As they are.
+    pub poses: [&'a [Pose; N]; LANES],
+    /// A_j.
+    pub rotations: [Matrix; N],
+    /// r_j − r_0: differences first, so that a rod far from the origin loses nothing here.
+    pub from_first: [Vector; N],
+}
+
+impl<'a, const N: usize> Nodes<'a, N> {
+    /// Of four elements.
+    #[inline(always)]
+    pub fn new(poses: [&'a [Pose; N]; LANES]) -> Self {
+        let mut nodes = Self { poses, rotations: [Matrix::default(); N], from_first: [Vector::default(); N] };
+        for j in 0..N {
+            nodes.rotations[j] = Matrix::gather(|lane| &poses[lane][j].rotation);
+            for k in 0..3 {
+                nodes.from_first[j][k] =
+                    Wide::gather(|lane| poses[lane][j].position[k] - poses[lane][0].position[k]);
+            }
+        }
+        nodes
+    }
+}
+
+/// Increments of the nodes of four elements, side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Increments<const N: usize> {
+    /// δr_j.
+    pub translation: [Vector; N],
+    /// δφ_j.
+    pub rotation: [Vector; N],
+}
+
+impl<const N: usize> Increments<N> {
+    /// Of four elements.
+    #[inline(always)]
+    pub fn new(increments: [&[Increment; N]; LANES]) -> Self {
+        Self {
+            translation: std::array::from_fn(|j| gather(|lane| &increments[lane][j].translation)),
+            rotation: std::array::from_fn(|j| gather(|lane| &increments[lane][j].rotation)),
+        }
+    }
+}
+
+/// A, γ̄ and κ̄ at a point of four elements, as in [`Strain`], and how the translations of the nodes strain it there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strains {
     /// A_IK as interpolated.
-    pub rotation: Columns,
+    pub rotation: Matrix,
     /// γ̄ [m].
-    pub gamma: Lanes,
+    pub gamma: Vector,
     /// κ̄ [rad].
-    pub kappa: Lanes,
+    pub kappa: Vector,
     /// G of ∂γ̄/∂δr_j = N_j′ G, the same for all nodes; κ̄ depends on rotations only.
-    pub gamma_translation: Columns,
+    pub gamma_translation: Matrix,
 }
 
 /// Derivative of an interpolated pose: δr = Σ (r_r δr_j + r_φ δφ_j), δφ = Σ φ_φ δφ_j (body basis).
@@ -77,6 +126,10 @@ pub struct PoseDerivative<const N: usize> {
 #[error("the nodes of an element are half a turn or more apart")]
 pub struct HalfTurn;
 
+/// The lane of an element whose nodes are half a turn or more apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HalfTurnIn(pub usize);
+
 /// A way to interpolate between the N nodes of an element.
 pub trait Interpolation<const N: usize> {
     /// Position and rotation, the latter projected to the nearest rotation where it is not one.
@@ -91,46 +144,46 @@ pub trait Interpolation<const N: usize> {
     /// The strains.
     fn strain(nodes: &[Pose; N], basis: &Basis<N>) -> Result<Strain, HalfTurn>;
 
-    /// What the derivatives of the strains need at a point, computed once.
-    type Point;
+    /// What the derivatives of the strains need at a point of four elements, computed once.
+    type Point: Copy + Default;
 
-    /// The strains at a point, ready for their derivatives.
+    /// The strains at a point of four elements, ready for their derivatives.
     fn point(
         processor: impl Processor,
-        nodes: &[Pose; N],
+        nodes: &Nodes<N>,
         basis: &Basis<N>,
-    ) -> Result<(StrainLanes, Self::Point), HalfTurn>;
+    ) -> Result<(Strains, Self::Point), HalfTurnIn>;
 
     /// M ∂γ̄/∂δφ_j for every given M.
     fn gamma_rotation<const K: usize>(
         processor: impl Processor,
         point: &Self::Point,
-        node: (usize, &Pose, &Basis<N>),
-        factors: [&Columns; K],
-    ) -> [Columns; K];
+        node: (usize, &Nodes<N>, &Basis<N>),
+        factors: [&Matrix; K],
+    ) -> [Matrix; K];
 
     /// ∂κ̄/∂δφ_j.
     fn kappa_rotation(
         processor: impl Processor,
         point: &Self::Point,
-        node: (usize, &Pose, &Basis<N>),
-    ) -> Columns;
+        node: (usize, &Nodes<N>, &Basis<N>),
+    ) -> Matrix;
 
     /// ∂(A n)/∂δφ_j for a fixed n in the body basis.
     fn turned(
         processor: impl Processor,
         point: &Self::Point,
-        node: (usize, &Pose, &Basis<N>),
-        n: &Lanes,
-    ) -> Columns;
+        node: (usize, &Nodes<N>, &Basis<N>),
+        n: &Vector,
+    ) -> Matrix;
 
-    /// (δγ̄, δκ̄) for given nodal increments.
+    /// (δγ̄, δκ̄) of four elements for given nodal increments.
     fn strain_increment(
         processor: impl Processor,
-        nodes: &[Pose; N],
+        nodes: &Nodes<N>,
         basis: &Basis<N>,
-        increments: &[Increment; N],
-    ) -> Result<(Lanes, Lanes), HalfTurn>;
+        increments: &Increments<N>,
+    ) -> Result<(Vector, Vector), HalfTurnIn>;
 
     /// What the rotation's derivative needs at a point, computed once: see [`Self::rotated`].
     type Turn;
@@ -149,12 +202,12 @@ pub trait Interpolation<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct R12;
 
-/// A, A′ and r′ at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A, A′ and r′ at a point of four elements.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct R12Point {
-    rotation: Columns,
-    slope: Columns,
-    tangent: Lanes,
+    rotation: Matrix,
+    slope: Matrix,
+    tangent: Vector,
 }
 
 /// Σ c_j A_j.
@@ -229,22 +282,24 @@ impl<const N: usize> Interpolation<N> for R12 {
     #[inline(always)]
     fn point(
         processor: impl Processor,
-        nodes: &[Pose; N],
+        nodes: &Nodes<N>,
         basis: &Basis<N>,
-    ) -> Result<(StrainLanes, R12Point), HalfTurn> {
-        let (mut rotation, mut slope, mut tangent) = (Columns::default(), Columns::default(), [0.0; 4]);
-        for j in 0..N {
-            let node = Columns::from(&nodes[j].rotation);
-            rotation = rotation.plus_scaled(processor, basis.value[j], &node);
-            slope = slope.plus_scaled(processor, basis.derivative[j], &node);
-            let from_first = lanes(&(nodes[j].position - nodes[0].position));
-            processor.add_scaled4(&mut tangent, basis.derivative[j], &from_first);
+    ) -> Result<(Strains, R12Point), HalfTurnIn> {
+        let mut rotation = nodes.rotations[0].scaled(processor, basis.value[0]);
+        let mut slope = nodes.rotations[0].scaled(processor, basis.derivative[0]);
+        let mut tangent = times(processor, basis.derivative[1], &nodes.from_first[1]);
+        for j in 1..N {
+            rotation = rotation.plus_scaled(processor, basis.value[j], &nodes.rotations[j]);
+            slope = slope.plus_scaled(processor, basis.derivative[j], &nodes.rotations[j]);
+            if j > 1 {
+                tangent = plus_scaled(processor, &tangent, basis.derivative[j], &nodes.from_first[j]);
+            }
         }
         let transposed = rotation.transpose();
-        let kappa = transposed.times(processor, &slope).axial();
+        let kappa = transposed.times(processor, &slope).axial(processor);
         let gamma = transposed.times_vector(processor, &tangent);
-        let strain = StrainLanes { rotation, gamma, kappa, gamma_translation: transposed };
-        Ok((strain, R12Point { rotation, slope, tangent }))
+        let strains = Strains { rotation, gamma, kappa, gamma_translation: transposed };
+        Ok((strains, R12Point { rotation, slope, tangent }))
     }
 
     /// N_j M (A_jᵀ r′)~, from δγ̄ = Aᵀ Σ N_j′ δr_j + Σ N_j (A_jᵀ r′)~ δφ_j.
@@ -252,12 +307,12 @@ impl<const N: usize> Interpolation<N> for R12 {
     fn gamma_rotation<const K: usize>(
         processor: impl Processor,
         point: &R12Point,
-        (j, node, basis): (usize, &Pose, &Basis<N>),
-        factors: [&Columns; K],
-    ) -> [Columns; K] {
-        let lever = Columns::from(&node.rotation).transpose_times(processor, &point.tangent);
-        let lever = times(basis.value[j], &lever);
-        let mut products = [Columns::default(); K];
+        (j, nodes, basis): (usize, &Nodes<N>, &Basis<N>),
+        factors: [&Matrix; K],
+    ) -> [Matrix; K] {
+        let lever = nodes.rotations[j].transpose_times_vector(processor, &point.tangent);
+        let lever = times(processor, basis.value[j], &lever);
+        let mut products = [Matrix::default(); K];
         for (product, factor) in products.iter_mut().zip(factors) {
             *product = factor.times_skew(processor, &lever);
         }
@@ -270,11 +325,11 @@ impl<const N: usize> Interpolation<N> for R12 {
     fn kappa_rotation(
         processor: impl Processor,
         point: &R12Point,
-        (j, node, basis): (usize, &Pose, &Basis<N>),
-    ) -> Columns {
-        let mixed = point.rotation.scaled(basis.derivative[j]);
+        (j, nodes, basis): (usize, &Nodes<N>, &Basis<N>),
+    ) -> Matrix {
+        let mixed = point.rotation.scaled(processor, basis.derivative[j]);
         let mixed = mixed.plus_scaled(processor, -basis.value[j], &point.slope);
-        Columns::from(&node.rotation).transpose().times(processor, &mixed).half_trace_minus()
+        nodes.rotations[j].transpose().times(processor, &mixed).half_trace_minus(processor)
     }
 
     /// δA n = −Σ N_j A_j ñ δφ_j.
@@ -282,37 +337,35 @@ impl<const N: usize> Interpolation<N> for R12 {
     fn turned(
         processor: impl Processor,
         _: &R12Point,
-        (j, node, basis): (usize, &Pose, &Basis<N>),
-        n: &Lanes,
-    ) -> Columns {
-        Columns::from(&node.rotation).times_skew(processor, &times(-basis.value[j], n))
+        (j, nodes, basis): (usize, &Nodes<N>, &Basis<N>),
+        n: &Vector,
+    ) -> Matrix {
+        nodes.rotations[j].times_skew(processor, &times(processor, -basis.value[j], n))
     }
 
     #[inline(always)]
     fn strain_increment(
         processor: impl Processor,
-        nodes: &[Pose; N],
+        nodes: &Nodes<N>,
         basis: &Basis<N>,
-        increments: &[Increment; N],
-    ) -> Result<(Lanes, Lanes), HalfTurn> {
-        let (_, point) = <Self as Interpolation<N>>::point(processor, nodes, basis)?;
-        let (mut turned, mut turned_slope) = (Columns::default(), Columns::default());
-        let mut stretched = Lanes::default();
+        increments: &Increments<N>,
+    ) -> Result<(Vector, Vector), HalfTurnIn> {
+        let (strains, point) = <Self as Interpolation<N>>::point(processor, nodes, basis)?;
+        let (mut turned, mut turned_slope) = (Matrix::default(), Matrix::default());
+        let mut stretched = Vector::default();
         for j in 0..N {
-            let node = Columns::from(&nodes[j].rotation);
-            let change = node.times_skew(processor, &lanes(&increments[j].rotation));
+            let change = nodes.rotations[j].times_skew(processor, &increments.rotation[j]);
             turned = turned.plus_scaled(processor, basis.value[j], &change);
             turned_slope = turned_slope.plus_scaled(processor, basis.derivative[j], &change);
-            let from_first = lanes(&(increments[j].translation - increments[0].translation));
-            processor.add_scaled4(&mut stretched, basis.derivative[j], &from_first);
+            let from_first = difference(processor, &increments.translation[j], &increments.translation[0]);
+            stretched = plus_scaled(processor, &stretched, basis.derivative[j], &from_first);
         }
-        let (turned, back) = (turned.transpose(), point.rotation.transpose());
-        let mut gamma = turned.times_vector(processor, &point.tangent);
-        for k in 0..3 {
-            processor.add_scaled4(&mut gamma, stretched[k], &back.0[k]);
-        }
+        let (turned, back) = (turned.transpose(), strains.gamma_translation);
+        let by_turn = turned.times_vector(processor, &point.tangent);
+        let by_stretch = back.times_vector(processor, &stretched);
+        let gamma = sum(processor, &by_turn, &by_stretch);
         let change = turned.times(processor, &point.slope).plus_product(processor, &back, &turned_slope);
-        Ok((gamma, change.axial()))
+        Ok((gamma, change.axial(processor)))
     }
 
     /// N_j A_j.
@@ -376,11 +429,23 @@ fn body_derivative(twist: &Twist, x: f64) -> [TwistMap; 2] {
     [TwistMap { diagonal: start.diagonal + back, coupling: start.coupling - back * skew(&position) }, end]
 }
 
-/// δθ by the nodes' increments, and the rotation at the point.
-#[derive(Clone, Copy, Debug)]
+/// δθ by the nodes' increments, and how the rotation turns with them, at a point of four elements.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Se3Point {
-    maps: [TwistMap; 2],
-    turn: Se3Turn,
+    rotation: Matrix,
+    diagonal: [Matrix; 2],
+    coupling: [Matrix; 2],
+    spin: [Matrix; 2],
+}
+
+/// One of every lane, for what branches.
+#[inline(always)]
+fn lane_by_lane<T>(
+    nodes: &Nodes<2>,
+    of: impl Fn(&[Pose; 2]) -> Result<T, HalfTurn>,
+) -> Result<[T; LANES], HalfTurnIn> {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|lane| of(nodes.poses[lane]).map_err(|HalfTurn| HalfTurnIn(lane)));
+    Ok([a?, b?, c?, d?])
 }
 
 /// A and ∂φ/∂δφ_j at a point of an SE(3) element.
@@ -423,59 +488,77 @@ impl Interpolation<2> for Se3 {
     type Point = Se3Point;
 
     /// The strains do not see where the nodes are, only how they lie to each other: ∂γ̄/∂δr_0 = −∂γ̄/∂δr_1.
-    #[inline(always)]
     fn point(
-        _: impl Processor,
-        nodes: &[Pose; 2],
+        processor: impl Processor,
+        nodes: &Nodes<2>,
         basis: &Basis<2>,
-    ) -> Result<(StrainLanes, Se3Point), HalfTurn> {
-        let twist = relative_twist(nodes)?;
-        let turn = Self::turn(nodes, basis)?;
-        let maps = twist_derivative(&twist);
-        let strain = StrainLanes {
-            rotation: Columns::from(&turn.rotation),
-            gamma: lanes(&twist.translation),
-            kappa: lanes(&twist.rotation),
-            gamma_translation: Columns::from(&(maps[1].diagonal * nodes[1].rotation.transpose())),
+    ) -> Result<(Strains, Se3Point), HalfTurnIn> {
+        let twists = lane_by_lane(nodes, relative_twist)?;
+        let turns = lane_by_lane(nodes, |nodes| Self::turn(nodes, basis))?;
+        let maps = twists.map(|twist| twist_derivative(&twist));
+        let point = Se3Point {
+            rotation: Matrix::gather(|lane| &turns[lane].rotation),
+            diagonal: std::array::from_fn(|j| Matrix::gather(|lane| &maps[lane][j].diagonal)),
+            coupling: std::array::from_fn(|j| Matrix::gather(|lane| &maps[lane][j].coupling)),
+            spin: std::array::from_fn(|j| Matrix::gather(|lane| &turns[lane].spin[j])),
         };
-        Ok((strain, Se3Point { maps, turn }))
+        let strains = Strains {
+            rotation: point.rotation,
+            gamma: gather(|lane| &twists[lane].translation),
+            kappa: gather(|lane| &twists[lane].rotation),
+            gamma_translation: point.diagonal[1].times(processor, &nodes.rotations[1].transpose()),
+        };
+        Ok((strains, point))
     }
 
     #[inline(always)]
     fn gamma_rotation<const K: usize>(
         processor: impl Processor,
         point: &Se3Point,
-        (j, ..): (usize, &Pose, &Basis<2>),
-        factors: [&Columns; K],
-    ) -> [Columns; K] {
-        let coupling = Columns::from(&point.maps[j].coupling);
-        factors.map(|factor| factor.times(processor, &coupling))
+        (j, ..): (usize, &Nodes<2>, &Basis<2>),
+        factors: [&Matrix; K],
+    ) -> [Matrix; K] {
+        let mut products = [Matrix::default(); K];
+        for (product, factor) in products.iter_mut().zip(factors) {
+            *product = factor.times(processor, &point.coupling[j]);
+        }
+        products
     }
 
     #[inline(always)]
-    fn kappa_rotation(_: impl Processor, point: &Se3Point, (j, ..): (usize, &Pose, &Basis<2>)) -> Columns {
-        Columns::from(&point.maps[j].diagonal)
+    fn kappa_rotation(_: impl Processor, point: &Se3Point, (j, ..): (usize, &Nodes<2>, &Basis<2>)) -> Matrix {
+        point.diagonal[j]
     }
 
+    /// δA n = A δφ̃ n = −A ñ δφ.
     #[inline(always)]
-    fn turned(_: impl Processor, point: &Se3Point, (j, ..): (usize, &Pose, &Basis<2>), n: &Lanes) -> Columns {
-        Columns::from(&Self::rotated(&point.turn, j, &vector(n)))
+    fn turned(
+        processor: impl Processor,
+        point: &Se3Point,
+        (j, ..): (usize, &Nodes<2>, &Basis<2>),
+        n: &Vector,
+    ) -> Matrix {
+        point.rotation.times_skew(processor, &times(processor, -1.0, n)).times(processor, &point.spin[j])
     }
 
     fn strain_increment(
         _: impl Processor,
-        nodes: &[Pose; 2],
+        nodes: &Nodes<2>,
         _: &Basis<2>,
-        increments: &[Increment; 2],
-    ) -> Result<(Lanes, Lanes), HalfTurn> {
-        let maps = twist_derivative(&relative_twist(nodes)?);
-        let (mut gamma, mut kappa) = (Vector3::zeros(), Vector3::zeros());
-        for (map, (node, increment)) in maps.iter().zip(nodes.iter().zip(increments)) {
-            gamma += map.diagonal * node.rotation.tr_mul(&increment.translation)
-                + map.coupling * increment.rotation;
-            kappa += map.diagonal * increment.rotation;
+        increments: &Increments<2>,
+    ) -> Result<(Vector, Vector), HalfTurnIn> {
+        let maps = lane_by_lane(nodes, |nodes| Ok(twist_derivative(&relative_twist(nodes)?)))?;
+        let mut changes = [[Vector3::zeros(); 2]; LANES];
+        for (lane, [gamma, kappa]) in changes.iter_mut().enumerate() {
+            for (j, map) in maps[lane].iter().enumerate() {
+                let [translation, rotation] =
+                    [&increments.translation[j], &increments.rotation[j]].map(|v| scatter(v, lane));
+                let node = &nodes.poses[lane][j].rotation;
+                *gamma += map.diagonal * node.tr_mul(&translation) + map.coupling * rotation;
+                *kappa += map.diagonal * rotation;
+            }
         }
-        Ok((lanes(&gamma), lanes(&kappa)))
+        Ok((gather(|lane| &changes[lane][0]), gather(|lane| &changes[lane][1])))
     }
 
     type Turn = Se3Turn;

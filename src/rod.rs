@@ -13,7 +13,7 @@ use crate::fit;
 use crate::inertia::Velocity;
 use crate::interpolation::{HalfTurn, Increment, Pose, R12, Se3};
 use crate::joint::Support;
-use crate::linear_solver::{Chain, Singular, Sparse};
+use crate::linear_solver::{Condensed, Singular, Sparse};
 use crate::scene::{InterpolationKind, NodeSpacing, QuadratureKind};
 use crate::section::SectionInertia;
 use crate::state::State;
@@ -130,7 +130,7 @@ pub struct Applied<'a> {
 /// Where the element tangents go.
 pub enum Target<'a> {
     /// 6 unknowns a node.
-    Chain(&'a mut Chain),
+    Chain(&'a mut Condensed),
     /// 7 unknowns a node, rows of node i from 7 i + `first_row`: (r, P) and the unit constraint (17).
     Quaternions {
         /// The system of the whole model.

@@ -1,8 +1,6 @@
 //! A rod of equal elements at given nodal poses, without supports or loads: the kernels in a plain loop.
 
-use cosserat::element::{
-    ElementForce, ReferencePoint, Stiffness, Stress, internal_force, internal_tangent, zero_tangent,
-};
+use cosserat::element::{ElementForce, ReferencePoint, Stiffness, Stress, zero_tangent};
 use cosserat::interpolation::{HalfTurn, Interpolation, Pose};
 use cosserat::lagrange::{Basis, basis_at_rule};
 use cosserat::lanes::Plain;
@@ -10,6 +8,7 @@ use cosserat::quadrature::gauss_legendre;
 use cosserat::scene::NodeSpacing;
 use nalgebra::{DMatrix, Vector3};
 
+use crate::one_element::{internal_force, internal_tangent};
 use crate::states::places;
 use crate::strains::strain_derivative;
 

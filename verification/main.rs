@@ -12,6 +12,7 @@ mod formulas;
 mod harness;
 mod measure;
 mod motion;
+mod one_element;
 mod pieces;
 mod placement;
 mod references;

@@ -3,7 +3,7 @@
 use nalgebra::Matrix6;
 
 use super::LoadLevel;
-use crate::linear_solver::{Chain, Coupled, NODE, Singular};
+use crate::linear_solver::{Condensed, Coupled, NODE, Singular};
 use crate::model::{Model, RodModel};
 use crate::rod::StepVelocity;
 use crate::state::State;
@@ -11,7 +11,7 @@ use crate::state::State;
 /// Chains, and the system of their kept nodes, of the bodies and of the multipliers.
 pub struct Chains {
     /// One a rod.
-    pub chains: Vec<Chain>,
+    pub chains: Vec<Condensed>,
     coupled: Coupled,
     /// First row of every coupled node in that system; `None` for the chains' own.
     places: Vec<Option<usize>>,
@@ -27,9 +27,9 @@ impl Chains {
         let chain = |rod: &RodModel| {
             let own = joined().filter(|node| rod.range.contains(node));
             let kept: Vec<usize> = own.map(|node| node - rod.range.start).collect();
-            Chain::new(rod.elements, rod.degree, &kept, rod.element_length)
+            Condensed::new(rod.elements, rod.degree, &kept, rod.element_length)
         };
-        let chains: Vec<Chain> = model.rods.iter().map(chain).collect();
+        let chains: Vec<Condensed> = model.rods.iter().map(chain).collect();
         let of_rods = model.rods.iter().zip(&chains);
         let kept = of_rods.flat_map(|(rod, chain)| chain.kept().iter().map(|node| rod.range.start + node));
         let nodes: Vec<usize> = kept.chain(model.bodies.iter().map(|body| body.node)).collect();

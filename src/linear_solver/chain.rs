@@ -69,20 +69,26 @@ pub struct Chain {
     filled: usize,
 }
 
+/// The nodes that a chain keeps, ascending: of an element with a kept node inside the ends, too.
+pub fn kept_nodes(degree: usize, kept: &[usize]) -> Vec<usize> {
+    let mut kept: Vec<usize> = kept
+        .iter()
+        .flat_map(|&node| {
+            let start = node - node % degree;
+            if node == start { vec![node] } else { vec![start, node, start + degree] }
+        })
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
 impl Chain {
     /// For a rod of `elements` elements of degree `degree`, 1 to 8, that keeps some of its nodes. A kept node inside
     /// an element makes it keep the element's ends, too: see [`Self::kept`]. `length` is that of an element [m].
     pub fn new(elements: usize, degree: usize, kept: &[usize], length: f64) -> Self {
         let last = elements * degree;
-        let mut kept: Vec<usize> = kept
-            .iter()
-            .flat_map(|&node| {
-                let start = node - node % degree;
-                if node == start { vec![node] } else { vec![start, node, start + degree] }
-            })
-            .collect();
-        kept.sort_unstable();
-        kept.dedup();
+        let kept = kept_nodes(degree, kept);
         let backwards = kept.first() == Some(&0) && kept.last() != Some(&last);
         let mut chain = Self {
             backwards,
@@ -171,6 +177,22 @@ impl Chain {
         chain
     }
 
+    /// With other numbers for the nodes, in the same order.
+    pub fn with_nodes_at(mut self, place: impl Fn(usize) -> usize) -> Self {
+        for front in &mut self.fronts {
+            for node in &mut front.nodes[..usize::from(front.width)] {
+                *node = place(*node as usize) as u32;
+            }
+        }
+        for node in &mut self.kept {
+            *node = place(*node);
+        }
+        for (row, column, _) in &mut self.remainder {
+            (*row, *column) = (place(*row), place(*column));
+        }
+        self
+    }
+
     /// The places of a front that are left over.
     #[inline(always)]
     fn rest(&self, front: &Front) -> Range<usize> {
@@ -187,6 +209,11 @@ impl Chain {
     /// The kept nodes, ascending.
     pub fn kept(&self) -> &[usize] {
         &self.kept
+    }
+
+    /// Whether elements are taken from the last to the first.
+    pub fn is_backwards(&self) -> bool {
+        self.backwards
     }
 
     /// The element that is eliminated at a step, counted from 0.

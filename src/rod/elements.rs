@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use super::quaternions::add_quaternion_element;
 use super::{
@@ -12,14 +12,18 @@ use super::{
     RodProperties, StepVelocity, TangentError, Target, full_points,
 };
 use crate::element::{
-    ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, advance_stress,
-    internal_force, internal_tangent, line_load_force, line_load_tangent, zero_tangent,
+    ElementForce, ElementTangent, LineLoad, ReferencePoint, Stiffness, Stress, TangentScratch, Tangents,
+    advance_stress, internal_force, internal_tangent, line_load_force, line_load_tangent,
+    set_tangent_of_lane, tangent_of_lane, zero_tangents,
 };
 use crate::fit;
-use crate::inertia::{Velocity, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients};
-use crate::interpolation::{HalfTurn, Increment, Interpolation, Pose};
+use crate::inertia::{
+    ElementMass, Velocity, inertia_force, inertia_tangents, kinetic_energy, mass_coefficients,
+};
+use crate::interpolation::{HalfTurn, HalfTurnIn, Increment, Increments, Interpolation, Nodes, Pose};
+use crate::joint::Support;
 use crate::lagrange::{Basis, basis, basis_at_rule, element_nodes};
-use crate::lanes::{Processor, vector, widest};
+use crate::lanes::{LANES, Processor, scatter, widest};
 use crate::quadrature::gauss_legendre;
 use crate::scene::{NodeSpacing, QuadratureKind};
 use crate::state::State;
@@ -92,11 +96,21 @@ where
         e: usize,
         properties: &'a RodProperties,
         inertia: &'a RodInertia,
-    ) -> (&'a [f64], &'a [[f64; N]; N]) {
+    ) -> ElementMass<'a, N> {
         let points = self.full_rule.len();
         let rows = inertia.coefficients[e * N * N..][..N * N].as_chunks::<N>().0;
-        let mass = rows.first_chunk().unwrap_or_else(|| unreachable!("N rows of N"));
-        (&properties.full_jacobians[e * points..][..points], mass)
+        let coefficients = rows.first_chunk().unwrap_or_else(|| unreachable!("N rows of N"));
+        ElementMass { jacobians: &properties.full_jacobians[e * points..][..points], coefficients }
+    }
+
+    /// The elements of a group of four, in order; the last group repeats the last element.
+    fn group(&self, group: usize) -> [usize; LANES] {
+        std::array::from_fn(|lane| (group * LANES + lane).min(self.elements - 1))
+    }
+
+    /// Lanes of a group that are elements of their own.
+    fn lanes(&self, group: usize) -> usize {
+        (self.elements - group * LANES).min(LANES)
     }
 
     /// A node shared by two elements is owned by the first.
@@ -107,11 +121,20 @@ where
     /// Adds the tangents of the loads at the nodes of element e.
     fn add_loads(&self, e: usize, applied: &Applied, tangent: &mut ElementTangent<N>) {
         let first = e * (N - 1);
-        let start = applied.tangents.partition_point(|(node, _)| *node < first);
-        for (node, block) in applied.tangents[start..].iter().take_while(|(node, _)| *node < first + N) {
+        for (node, block) in loaded(applied, first, N) {
             if Self::owned(e, *node) {
                 tangent[node - first][node - first] += block;
             }
+        }
+    }
+
+    /// Reduces the held nodes of element e.
+    fn hold(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
+        let first = e * (N - 1);
+        for support in held(applied, first, N) {
+            let node = support.node;
+            let owner = Self::owned(e, node);
+            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owner);
         }
     }
 
@@ -119,38 +142,103 @@ where
     #[inline(always)]
     fn add_step(
         &self,
-        e: usize,
+        processor: impl Processor,
+        elements: &[usize; LANES],
         properties: &RodProperties,
         step: &StepVelocity,
-        tangent: &mut ElementTangent<N>,
+        tangents: &mut Tangents<N>,
     ) {
         let Some(inertia) = &properties.inertia else {
-            for block in tangent.iter_mut().flatten() {
-                *block *= step.b * step.b;
+            for column in tangents.iter_mut().flatten().flatten() {
+                for x in column {
+                    *x = processor.scale(step.b * step.b, *x);
+                }
             }
             return;
         };
-        let (jacobians, mass) = self.mass_of(e, properties, inertia);
-        inertia_tangent::<N>(
+        inertia_tangents::<N>(
+            processor,
             &self.full_rule,
-            jacobians,
-            mass,
+            &elements.map(|e| self.mass_of(e, properties, inertia)),
             &inertia.section,
-            self.of(e, step.velocities),
+            elements.map(|e| self.of(e, step.velocities)),
             step.b,
-            tangent,
+            tangents,
         );
     }
 
-    /// Reduces the held nodes of element e.
-    fn hold(&self, e: usize, poses: &[Pose], applied: &Applied, tangent: &mut ElementTangent<N>) {
-        let first = e * (N - 1);
-        let start = applied.supports.partition_point(|support| support.node < first);
-        for support in applied.supports[start..].iter().take_while(|support| support.node < first + N) {
-            let node = support.node;
-            let owner = Self::owned(e, node);
-            support.reduce(tangent, node - first, &poses[node].rotation, &applied.force[node], owner);
+    /// The tangents of four elements with all that acts on them.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
+    fn tangents_of(
+        &self,
+        processor: impl Processor,
+        elements: &[usize; LANES],
+        poses: &[Pose],
+        properties: &RodProperties,
+        stresses: &[Stress],
+        applied: &Applied,
+        scratch: &mut TangentScratch<N, I::Point>,
+        tangents: &mut Tangents<N>,
+    ) -> Result<(), TangentError> {
+        internal_tangent::<N, I>(
+            processor,
+            &Nodes::new(elements.map(|e| self.of(e, poses))),
+            &self.rule,
+            (&properties.points, &elements.map(|e| e * self.rule.len())),
+            &properties.stiffness,
+            stresses,
+            scratch,
+            tangents,
+        )
+        .map_err(|HalfTurnIn(lane)| TangentError::HalfTurn(elements[lane]))?;
+        // Loads come before the step's inertia, supports after it.
+        let turning = applied.line_loaded && applied.line_load.turns();
+        for (lane, &e) in elements.iter().enumerate() {
+            if turning || loaded(applied, e * (N - 1), N).next().is_some() {
+                self.load_lane(lane, e, poses, properties, applied, tangents)?;
+            }
         }
+        if let Some(step) = &applied.step {
+            self.add_step(processor, elements, properties, step, tangents);
+        }
+        for (lane, &e) in elements.iter().enumerate() {
+            if held(applied, e * (N - 1), N).next().is_some() {
+                let mut tangent = tangent_of_lane(tangents, lane);
+                self.hold(e, poses, applied, &mut tangent);
+                set_tangent_of_lane(tangents, lane, &tangent);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the tangents of the loads on the element of a lane.
+    #[inline(never)]
+    fn load_lane(
+        &self,
+        lane: usize,
+        e: usize,
+        poses: &[Pose],
+        properties: &RodProperties,
+        applied: &Applied,
+        tangents: &mut Tangents<N>,
+    ) -> Result<(), TangentError> {
+        let mut tangent = tangent_of_lane(tangents, lane);
+        if applied.line_loaded && applied.line_load.turns() {
+            let points = self.full_rule.len();
+            let jacobians = &properties.full_jacobians[e * points..][..points];
+            line_load_tangent::<N, I>(
+                self.of(e, poses),
+                &self.full_rule,
+                jacobians,
+                applied.line_load,
+                &mut tangent,
+            )
+            .map_err(|_| TangentError::HalfTurn(e))?;
+        }
+        self.add_loads(e, applied, &mut tangent);
+        set_tangent_of_lane(tangents, lane, &tangent);
+        Ok(())
     }
 
     /// [`RodElements::assemble_tangent`].
@@ -166,63 +254,51 @@ where
         applied: &Applied,
         target: &mut Target,
     ) -> Result<(), TangentError> {
-        let (q, fq) = (self.rule.len(), self.full_rule.len());
         let poses = &state.poses()[range.clone()];
-        let turning = applied.line_loaded && applied.line_load.turns();
-        let mut scratch = zero_tangent::<N>();
-        // An element is written where it is eliminated, or built once more if that takes pivoting.
-        let (mut step, mut in_place) = (0, true);
-        while step < self.elements {
-            let (e, place) = match target {
-                Target::Chain(chain) if in_place => (chain.element(step), chain.place(step)),
-                Target::Chain(chain) => (chain.element(step), None),
-                Target::Quaternions { .. } | Target::Blocks(_) => (step, None),
+        let mut tangents = zero_tangents::<N>();
+        let mut scratch = TangentScratch::default();
+        if let Target::Chain(chain) = target {
+            chain.begin();
+        }
+        let mut group = 0;
+        while group * LANES < self.elements {
+            let elements = match target {
+                Target::Chain(chain) => chain.group(group),
+                Target::Quaternions { .. } | Target::Blocks(_) => self.group(group),
             };
-            let written = place.is_some();
-            let tangent = place.unwrap_or(&mut scratch);
-            let nodes = self.of(e, poses);
-            let (points, stresses) = (&properties.points[e * q..][..q], &stresses[e * q..][..q]);
-            internal_tangent::<N, I>(
+            self.tangents_of(
                 processor,
-                nodes,
-                &self.rule,
-                points,
-                &properties.stiffness,
+                &elements,
+                poses,
+                properties,
                 stresses,
-                tangent,
-            )
-            .map_err(|_| TangentError::HalfTurn(e))?;
-            if turning {
-                let jacobians = &properties.full_jacobians[e * fq..][..fq];
-                line_load_tangent::<N, I>(nodes, &self.full_rule, jacobians, applied.line_load, tangent)
-                    .map_err(|_| TangentError::HalfTurn(e))?;
-            }
-            self.add_loads(e, applied, tangent);
-            if let Some(step) = &applied.step {
-                self.add_step(e, properties, step, tangent);
-            }
-            self.hold(e, poses, applied, tangent);
+                applied,
+                &mut scratch,
+                &mut tangents,
+            )?;
             match target {
-                Target::Chain(chain) if written => {
-                    in_place = chain.eliminate_written(processor, step);
-                    if !in_place {
+                Target::Chain(chain) => {
+                    if !chain.add(processor, group, &mut tangents)? {
+                        group = 0;
                         continue;
                     }
                 }
-                Target::Chain(chain) => {
-                    chain.add_element(processor, step, &scratch)?;
-                    in_place = true;
-                }
                 Target::Quaternions { system, first_row } => {
-                    let first = e * (N - 1);
                     let quaternions = &state.quaternions()[range.clone()];
-                    add_quaternion_element(system, *first_row + QUATERNION_NODE * first, &scratch, |i| {
-                        &quaternions[first + i]
-                    });
+                    for (lane, &e) in elements.iter().enumerate().take(self.lanes(group)) {
+                        let first = e * (N - 1);
+                        let tangent = tangent_of_lane(&tangents, lane);
+                        let row = *first_row + QUATERNION_NODE * first;
+                        add_quaternion_element(system, row, &tangent, |i| &quaternions[first + i]);
+                    }
                 }
-                Target::Blocks(blocks) => blocks.extend(scratch.iter().flatten()),
+                Target::Blocks(blocks) => {
+                    for lane in 0..self.lanes(group) {
+                        blocks.extend(tangent_of_lane(&tangents, lane).iter().flatten());
+                    }
+                }
             }
-            step += 1;
+            group += 1;
         }
         Ok(())
     }
@@ -240,27 +316,28 @@ where
         first: usize,
         forces: &mut NodalForces,
     ) -> Result<(), usize> {
-        let (q, fq) = (self.rule.len(), self.full_rule.len());
-        for e in 0..self.elements {
-            let nodes = self.of(e, poses);
-            let mut element = ElementForce::default();
-            let (points, stresses) = (&properties.points[e * q..][..q], &mut constitutive[e * q..][..q]);
-            internal_force::<N, I>(
+        let points = self.full_rule.len();
+        for group in 0..self.elements.div_ceil(LANES) {
+            let elements = self.group(group);
+            let rows = internal_force::<N, I>(
                 processor,
-                nodes,
+                &Nodes::new(elements.map(|e| self.of(e, poses))),
                 &self.rule,
-                points,
+                (&properties.points, &elements.map(|e| e * self.rule.len())),
                 &properties.stiffness,
-                stresses,
-                &mut element,
+                constitutive,
             )
-            .map_err(|_| e)?;
-            if let Some(line_load) = line_load {
-                let jacobians = &properties.full_jacobians[e * fq..][..fq];
-                line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
-                    .map_err(|_| e)?;
+            .map_err(|HalfTurnIn(lane)| elements[lane])?;
+            for (lane, &e) in elements.iter().enumerate().take(self.lanes(group)) {
+                let mut element = rows.of_lane(lane);
+                if let Some(line_load) = line_load {
+                    let jacobians = &properties.full_jacobians[e * points..][..points];
+                    let nodes = self.of(e, poses);
+                    line_load_force::<N, I>(nodes, &self.full_rule, jacobians, line_load, &mut element)
+                        .map_err(|_| e)?;
+                }
+                forces.scatter(first + e * (N - 1), &element);
             }
-            forces.scatter(first + e * (N - 1), &element);
         }
         Ok(())
     }
@@ -276,20 +353,19 @@ where
         constitutive: &[Stress],
         stresses: &mut [Stress],
     ) -> Result<(), usize> {
-        let q = self.rule.len();
-        for e in 0..self.elements {
-            let points = e * q..(e + 1) * q;
+        for group in 0..self.elements.div_ceil(LANES) {
+            let elements = self.group(group);
             advance_stress::<N, I>(
                 processor,
-                self.of(e, poses),
+                &Nodes::new(elements.map(|e| self.of(e, poses))),
                 &self.rule,
-                &properties.points[points.clone()],
+                (&properties.points, &elements.map(|e| e * self.rule.len())),
                 &properties.stiffness,
-                self.of(e, increments),
-                &constitutive[points.clone()],
-                &mut stresses[points],
+                &Increments::new(elements.map(|e| self.of(e, increments))),
+                constitutive,
+                stresses,
             )
-            .map_err(|_| e)?;
+            .map_err(|HalfTurnIn(lane)| elements[lane])?;
         }
         Ok(())
     }
@@ -306,12 +382,12 @@ where
     ) {
         let Some(inertia) = &properties.inertia else { return };
         for e in 0..self.elements {
-            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let mass = self.mass_of(e, properties, inertia);
             let mut element = ElementForce::default();
             inertia_force::<N>(
                 &self.full_rule,
-                jacobians,
-                mass,
+                mass.jacobians,
+                mass.coefficients,
                 &inertia.section,
                 self.of(e, velocities),
                 self.of(e, accelerations),
@@ -320,6 +396,22 @@ where
             forces.scatter(first + e * (N - 1), &element);
         }
     }
+}
+
+/// Tangents of loads on the nodes from `first` on, so many.
+fn loaded<'a>(
+    applied: &'a Applied,
+    first: usize,
+    count: usize,
+) -> impl Iterator<Item = &'a (usize, Matrix6<f64>)> {
+    let start = applied.tangents.partition_point(|(node, _)| *node < first);
+    applied.tangents[start..].iter().take_while(move |(node, _)| *node < first + count)
+}
+
+/// Supports of the nodes from `first` on, so many.
+fn held<'a>(applied: &'a Applied, first: usize, count: usize) -> impl Iterator<Item = &'a Support> {
+    let start = applied.supports.partition_point(|support| support.node < first);
+    applied.supports[start..].iter().take_while(move |support| support.node < first + count)
 }
 
 impl<const N: usize, I> RodElements for Elements<N, I>
@@ -341,17 +433,19 @@ where
         let full = needs.line_loads || needs.inertia.is_some();
         for e in 0..self.elements {
             let nodes = self.of(e, poses);
+            let side_by_side = Nodes::new([nodes; LANES]);
             for basis in &self.rule {
                 // As the forces compute it: strains at rest are zero, not rounding.
-                let (strain, _) = widest!(processor => I::point(processor, nodes, basis)).map_err(|_| e)?;
-                let (rotation, gamma) = (Matrix3::from(strain.rotation), vector(&strain.gamma));
+                let (strain, _) =
+                    widest!(processor => I::point(processor, &side_by_side, basis)).map_err(|_| e)?;
+                let (rotation, gamma) = (strain.rotation.scatter(0), scatter(&strain.gamma, 0));
                 // ‖r⁰′‖ = ‖A⁻ᵀ γ̄‖: A is not quite orthogonal between the nodes.
                 let inverse = rotation.transpose().try_inverse().ok_or(e)?;
                 let jacobian = (inverse * gamma).norm();
                 if !(rotation.determinant() > 1e-3 && jacobian > 0.0) {
                     return Err(e);
                 }
-                let (gamma, kappa) = (gamma / jacobian, vector(&strain.kappa) / jacobian);
+                let (gamma, kappa) = (gamma / jacobian, scatter(&strain.kappa, 0) / jacobian);
                 result.points.push(ReferencePoint { jacobian, gamma, kappa });
             }
             for basis in self.full_rule.iter().filter(|_| full) {
@@ -396,7 +490,7 @@ where
     fn visit_inertia(&self, properties: &RodProperties, velocities: &[Velocity], visit: &mut InertiaVisitor) {
         let Some(inertia) = &properties.inertia else { return };
         for e in 0..self.elements {
-            let (jacobians, mass) = self.mass_of(e, properties, inertia);
+            let ElementMass { jacobians, coefficients: mass } = self.mass_of(e, properties, inertia);
             let velocities = self.of(e, velocities);
             let mut spins = [[Vector3::zeros(); N]; N];
             for (basis, jacobian) in self.full_rule.iter().zip(jacobians) {
@@ -441,7 +535,7 @@ where
     fn kinetic_energy(&self, properties: &RodProperties, velocities: &[Velocity]) -> f64 {
         let Some(inertia) = &properties.inertia else { return 0.0 };
         let of_element = |e| {
-            let mass = self.mass_of(e, properties, inertia).1;
+            let mass = self.mass_of(e, properties, inertia).coefficients;
             kinetic_energy::<N>(mass, &inertia.section, self.of(e, velocities))
         };
         (0..self.elements).map(of_element).sum()

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use cosserat::element::{ElementForce, Stress, internal_force, internal_tangent, zero_tangent};
+use cosserat::element::{ElementForce, Stress, zero_tangent};
 use cosserat::interpolation::{Interpolation, Pose, R12, Se3};
 use cosserat::lagrange::basis_at_rule;
 use cosserat::lanes::Plain;
@@ -18,6 +18,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::cases::derivatives::{STIFFNESS, reference_point};
 use crate::formulas;
+use crate::one_element::{internal_force, internal_tangent};
 use crate::states::{ElementState, Generator, Worst, places};
 
 /// The cases of this file.

@@ -13,7 +13,7 @@
 
 use nalgebra::Matrix6;
 
-use crate::lanes::{Processor, product, times as scale};
+use crate::lanes::Processor;
 use crate::linear_solver::NODE;
 
 /// A 6×6 matrix, column by column.
@@ -46,6 +46,18 @@ impl Growth {
         three(&force[..3]) + three(&force[3..]) / square + three(&moment[..3]) * square + three(&moment[3..])
             <= MOST_GROWTH * MOST_GROWTH
     }
+}
+
+/// a x.
+#[inline(always)]
+fn scale(a: f64, x: &[f64; NODE]) -> [f64; NODE] {
+    x.map(|x| a * x)
+}
+
+/// a b by components.
+#[inline(always)]
+fn product(a: &[f64; NODE], b: &[f64; NODE]) -> [f64; NODE] {
+    std::array::from_fn(|k| a[k] * b[k])
 }
 
 /// D = L U in place, with the reciprocals of the diagonal of U.

@@ -1,9 +1,6 @@
 //! Stress resultants and internal forces of one element, and their tangents.
 
-use cosserat::element::{
-    ElementForce, ElementTangent, ReferencePoint, Stiffness, Stress, advance_stress, internal_force,
-    internal_tangent, zero_tangent,
-};
+use cosserat::element::{ElementForce, ElementTangent, ReferencePoint, Stiffness, Stress, zero_tangent};
 use cosserat::interpolation::{Increment, Interpolation, R12, Se3};
 use cosserat::lagrange::basis_at_rule;
 use cosserat::lanes::Plain;
@@ -15,6 +12,7 @@ use num_dual::Dual64;
 use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Ansatz, Pair, Point, Rows, lift};
+use crate::one_element::{advance_stress, internal_force, internal_tangent};
 use crate::states::{ANGLES, ElementState, Generator, Worst, places, unit_increment};
 
 /// The cases of this file.

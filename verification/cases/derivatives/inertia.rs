@@ -3,11 +3,11 @@
 
 use cosserat::element::{ElementForce, ElementTangent, zero_tangent};
 use cosserat::inertia::{
-    Velocity, gyroscopic_tangent, inertia_force, inertia_tangent, kinetic_energy, mass_coefficients,
-    spin_from_turn,
+    Velocity, gyroscopic_tangent, inertia_force, kinetic_energy, mass_coefficients, spin_from_turn,
 };
 use cosserat::interpolation::Increment;
 use cosserat::lagrange::{Basis, basis_at_rule};
+use cosserat::lanes::Plain;
 use cosserat::quadrature::gauss_legendre;
 use cosserat::scene::NodeSpacing;
 use cosserat::section::SectionInertia;
@@ -18,6 +18,7 @@ use super::forces::compare_rows;
 use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Frame, Number, Pair, Rows, Weight, axial, lift, rotation, tilde, turned};
+use crate::one_element::inertia_tangent;
 use crate::states::{ElementState, Generator, Worst, places, unit_increment};
 
 /// The cases of this file.
@@ -369,7 +370,16 @@ fn step_of<const N: usize>(checks: &mut Checks, spacing: NodeSpacing, name: &str
             translation: end.velocities[i].0.map(|x| x.re),
             rotation: end.velocities[i].1.map(|x| x.re),
         });
-        inertia_tangent(&element.rule, &element.jacobians, &element.mass, &SECTION, &now, b, &mut tangent);
+        inertia_tangent(
+            Plain,
+            &element.rule,
+            &element.jacobians,
+            &element.mass,
+            &SECTION,
+            &now,
+            b,
+            &mut tangent,
+        );
 
         let mut blocks: [(Vec<f64>, Vec<f64>); 4] = Default::default();
         for (j, k) in (0..N).flat_map(|j| (0..6).map(move |k| (j, k))) {

@@ -3,7 +3,6 @@
 use cosserat::fit::{twist_from, twist_jacobian};
 use cosserat::interpolation::{Interpolation, Pose, R12, Se3};
 use cosserat::lagrange::basis;
-use cosserat::lanes::{Plain, vector};
 use cosserat::scene::NodeSpacing;
 use nalgebra::{Matrix3, Vector3};
 use num_dual::Dual64;
@@ -12,7 +11,7 @@ use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Ansatz, Frame, axial, polar, relative_twist};
 use crate::states::{ANGLES, ElementState, Generator, Worst, places, unit_increment};
-use crate::strains::strain_derivative;
+use crate::strains::{strain_derivative, strain_increment};
 
 /// The cases of this file.
 pub fn all() -> Vec<Case> {
@@ -107,8 +106,7 @@ fn strains<const N: usize, I: Interpolation<N>>(
                 value.compare_against(s.kappa.iter().copied(), exact.kappa.iter().map(|x| x.re), scale);
                 value.compare_against(s.rotation.iter().copied(), exact.rotation.iter().map(|x| x.re), scale);
             }
-            let (gamma, kappa) = I::strain_increment(Plain, &poses, &basis, &increments)?;
-            let (gamma, kappa) = (vector(&gamma), vector(&kappa));
+            let [gamma, kappa] = strain_increment::<N, I>(&poses, &basis, &increments)?;
             direction.compare_against(gamma.iter().copied(), exact.gamma.iter().map(|x| x.eps), scale);
             direction.compare_against(kappa.iter().copied(), exact.kappa.iter().map(|x| x.eps), scale);
         }

@@ -1,9 +1,7 @@
 //! Nodes held by the ground: the residual on the manifold r = c − A s, δφ = P z, differentiated as a whole, against
 //! the reduction Tᵀ K T with its geometric term.
 
-use cosserat::element::{
-    ElementForce, ElementTangent, ReferencePoint, Stress, internal_force, internal_tangent, zero_tangent,
-};
+use cosserat::element::{ElementForce, ElementTangent, ReferencePoint, Stress, zero_tangent};
 use cosserat::interpolation::{Increment, Pose, R12};
 use cosserat::joint::Support;
 use cosserat::lagrange::basis_at_rule;
@@ -18,6 +16,7 @@ use super::forces::{STIFFNESS, compare_blocks, reference_point, stresses};
 use super::{ROUNDING, ROUNDING_REASON};
 use crate::case::{Case, Checks, Kind, Outcome};
 use crate::formulas::{self, Ansatz, Rows, lift};
+use crate::one_element::{internal_force, internal_tangent};
 use crate::states::{ElementState, Generator, Worst, places};
 
 /// The cases of this file.
