@@ -514,9 +514,12 @@ pub fn line_load_force<const N: usize, I: Interpolation<N>>(
     result: &mut ElementForce<N>,
 ) -> Result<(), HalfTurn> {
     for (basis, jacobian) in rule.iter().zip(jacobians) {
-        let rotation = I::strain(nodes, basis)?.rotation;
-        let force = load.force + rotation * load.body_force;
-        let moment = load.body_moment + rotation.tr_mul(&load.moment);
+        let (mut force, mut moment) = (load.force, load.body_moment);
+        if load.turns() {
+            let rotation = I::strain(nodes, basis)?.rotation;
+            force += rotation * load.body_force;
+            moment += rotation.tr_mul(&load.moment);
+        }
         let (force_norm, moment_norm) = (force.norm(), moment.norm());
         for i in 0..N {
             let value = basis.weight * jacobian * basis.value[i];

@@ -134,7 +134,7 @@ pub enum SolveError {
     #[error(
         "the step to time {time:?} s failed: after {iterations} iterations the residual is {residual:.3e}, the \
          tolerance {tolerance:.3e} ({reason}); {steps} steps converged, up to time {reached:?} s; shorter steps may \
-         pass"
+         pass, or more elements where shorter steps stop earlier"
     )]
     Step {
         /// The time that was tried [s].
@@ -154,7 +154,8 @@ pub enum SolveError {
     },
     /// No step is short enough for the accuracy.
     #[error(
-        "no step on from time {reached:?} s was accepted: {obstacle}, after {steps} steps; a larger `accuracy` may pass"
+        "no step on from time {reached:?} s was accepted: {obstacle}, after {steps} steps; a larger `accuracy` may \
+         pass, or more elements"
     )]
     Accuracy {
         /// The last time that was reached [s].

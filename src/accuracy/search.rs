@@ -223,12 +223,13 @@ impl<'a> Search<'a> {
         self.runs += 1;
         let (number, progress) = (self.runs, &mut self.progress);
         let start = ThreadTime::now();
-        let mut spent = Statistics::default();
-        // Of a run that stops, too.
-        let trial = solve(&variant, self.plan.milestones(), &mut |done, work| {
-            spent.clone_from(work);
-            progress(number, done, work);
-        });
+        let trial = solve(&variant, self.plan.milestones(), &mut |done, work| progress(number, done, work));
+        let spent = match &trial {
+            Ok(trial) => trial.statistics.clone(),
+            // With the step or the increment that failed.
+            Err(Stop::Solver(failure)) => failure.partial.statistics.clone(),
+            Err(Stop::Setup(_)) => Statistics::default(),
+        };
         self.count(&spent, level, start);
         trial
     }

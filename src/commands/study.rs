@@ -16,6 +16,8 @@ pub fn study(arguments: &SceneArguments, out: &Path, quiet: bool) -> Result<(), 
     let (file, scene, _) = load(arguments)?;
     let plan = Plan::new(&scene).map_err(|error| Error::Scene(file.locate(error)))?;
     output::create(out)?;
+    // Before a reference is looked for, which may take minutes.
+    files::try_to_write(out)?;
     let stored = files::read(out, &plan).map_err(|error| match error {
         Error::Scene(error) => Error::Scene(SceneError { place: Some(out.display().to_string()), ..error }),
         other => other,
@@ -26,7 +28,7 @@ pub fn study(arguments: &SceneArguments, out: &Path, quiet: bool) -> Result<(), 
     let (reference, rows) = outcome.map_err(|stop| match stop {
         Stop::Setup(Error::Scene(error)) => Failure::Library(Error::Scene(file.locate(error))),
         Stop::Setup(error) => Failure::Library(error),
-        Stop::Solver(error) => Failure::Reference(error),
+        Stop::Solver(failure) => Failure::Reference(failure.error),
     })?;
     report(&plan, &scene, &reference, &rows);
     say(format_args!("results in {}", out.display()));
@@ -95,9 +97,10 @@ fn report(plan: &Plan, scene: &Scene, reference: &Reference, rows: &[Row]) {
     let name = if name.is_empty() { String::new() } else { format!("{name}, ") };
     say(format_args!("reference: {name}its own error is about {}", reference.error));
     let failed = rows.iter().filter(|row| row.status != SOLVED).count();
+    let runs = if rows.len() == 1 { "run" } else { "runs" };
     match failed {
-        0 => say(format_args!("{} runs", rows.len())),
-        _ => say(format_args!("{} runs, {failed} of which failed: study.csv says why", rows.len())),
+        0 => say(format_args!("{} {runs}", rows.len())),
+        _ => say(format_args!("{} {runs}, {failed} of which failed: study.csv says why", rows.len())),
     }
     let shown = Shown::of(rows);
     for &accuracy in plan.accuracies() {

@@ -1,4 +1,5 @@
-//! Energy that comes from nowhere: the sign of a step too long for the motion, though every step converged.
+//! Energy that comes from nowhere: the sign of a step too long for the motion, though every step converged, or of modes
+//! of the mesh that grow in steps too short to damp them ([`super::generalized_alpha`]).
 
 use crate::model::Model;
 use crate::solution::{Energies, StopReason};
@@ -68,7 +69,8 @@ impl Balance {
         (part > SURPLUS).then(|| {
             format!(
                 "kinetic and strain energy exceed what gravity and the loads have brought by up to {surplus:.1e} J, \
-                 where {turnover:.1e} J had gone round: the time step is too long for this motion"
+                 where {turnover:.1e} J had gone round: the time step is too long for this motion, or, where shorter \
+                 steps make it worse, the mesh too coarse"
             )
         })
     }

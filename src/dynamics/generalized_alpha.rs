@@ -46,6 +46,19 @@
 //! 2 P̄ ∘ P⃛ = ω̈ + ½ ω × ω̇ − ¼ |ω|² ω, from Ṗ = ½ P ∘ (0, ω). After a kink, where ÿ jumps by Δ, a is off by −δ h Δ and
 //! then by −α_m/(1 − α_m) of that from step to step: y by δ h² Δ [1 − α_m − γ] = δ² h² Δ in all, up to the sign.
 //!
+//! # What grows
+//! K is unsymmetric, and a mesh that is coarse for the curvature of its rods has fast modes with ω² < 0 or complex, which
+//! [`crate::modes`] names. Such a mode grows like e^{λt}, λ > 0 where ω² = −λ². The step multiplies it by R(λh), which for
+//! long steps tends to −ρ. On y' = λ y R = −1 makes the two equations (2 α_m − 1) a = (2 α_f − 1) λ y and −2 y =
+//! h (1 − 2γ) a, so
+//!
+//! ```text
+//! |R| < 1  ⇔  λ h > 2 (1 − 2α_m)/((1 − 2γ)(2α_f − 1)) = 4 (1 + ρ)/(1 − ρ)
+//! ```
+//!
+//! 36 for ρ = 0.8: shorter steps than that of the slowest such mode let it grow, until Newton's iteration or the balance
+//! of energy stops the run. The remedy is the mesh, not the step.
+//!
 //! P₊ keeps no norm by itself; after the step it is normalised and its part of a scaled by the same factor:
 //! (10) is linear in P, so this turns nothing.
 

@@ -26,7 +26,7 @@ enum Ends {
     /// Along four segments side by side.
     Segments(Box<Segments>),
     /// One after the other, for long rods and those that keep nodes between their ends.
-    Chain(Chain),
+    Chain(Box<Chain>),
 }
 
 /// The tangent of one rod.
@@ -65,7 +65,7 @@ impl Condensed {
                     let of_ends: Vec<usize> = kept.iter().map(|node| node / degree).collect();
                     let chain = Chain::new(elements, 1, &of_ends, length);
                     let layout = Layout::InOrder { elements, backwards: chain.is_backwards() };
-                    (layout, Ends::Chain(chain.with_nodes_at(|node| node * degree)))
+                    (layout, Ends::Chain(Box::new(chain.with_nodes_at(|node| node * degree))))
                 }
             };
             (Some((Interiors::new(layout, degree, length), ends)), None)

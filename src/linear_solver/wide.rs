@@ -16,9 +16,10 @@ use crate::lanes::{LANES, Processor, Wide};
 /// Six entries of a node in every lane.
 pub type Entries = [Wide; NODE];
 
-/// Multipliers up to here, forces and moments made comparable by a length, cost at most three digits of a step of
-/// Newton's iteration, which mends them. With held ends an element is stiff, and they are of the order of one.
-const MOST_GROWTH: f64 = 1e3;
+/// Multipliers up to here, forces and moments made comparable by a length, cost at most four digits of a step of
+/// Newton's iteration, which mends them. With held ends an element is stiff, and they are of the order of ten, but for
+/// iterates far from equilibrium that all but buckle within an element.
+const MOST_GROWTH: f64 = 1e4;
 
 /// The entries of one node of each of four elements.
 #[inline(always)]

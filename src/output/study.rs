@@ -97,11 +97,26 @@ pub fn draw(dir: &Path, title: Option<&str>, rows: &[Row], reference: &Errors) -
     replace(path, &document)
 }
 
+/// Writes a file into the folder and removes it.
+///
+/// # Errors
+/// [`Error::File`] if nothing can be written there.
+pub fn try_to_write(dir: &Path) -> Result<(), Error> {
+    let path = beside(&dir.join(TABLE));
+    std::fs::write(&path, "").map_err(|source| cannot_write(&path, source))?;
+    super::remove(path)
+}
+
+/// The name beside a file's is this process's own: the same study may be running in the folder twice.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = path.to_owned().into_os_string();
+    name.push(format!(".{}.part", std::process::id()));
+    name.into()
+}
+
 /// Writes a file beside its place and moves it there.
 fn replace(path: PathBuf, text: &str) -> Result<(), Error> {
-    let mut beside = path.clone().into_os_string();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
+    let beside = beside(&path);
     std::fs::write(&beside, text).map_err(|source| cannot_write(&beside, source))?;
     std::fs::rename(&beside, &path).map_err(|source| cannot_write(&path, source))
 }
@@ -109,14 +124,14 @@ fn replace(path: PathBuf, text: &str) -> Result<(), Error> {
 /// The rows of the plan's runs; what was cut off or is of no run of the plan is left out, to be done again.
 fn read_rows(dir: &Path, plan: &Plan) -> Result<Vec<Row>, Error> {
     let path = dir.join(TABLE);
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
+    let bytes = match std::fs::read(&path) {
+        Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(source) => return Err(Error::File { action: "read", path, source }),
     };
     // The last line may have been cut off, and still look like one.
-    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-    let mut reader = csv::Reader::from_reader(whole.as_bytes());
+    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(&[][..], |end| &bytes[..=end]);
+    let mut reader = csv::Reader::from_reader(whole);
     let found: Vec<Row> = reader.deserialize::<Record>().filter_map(|record| record.ok()?.row()).collect();
     Ok(plan.keys().filter_map(|key| found.iter().find(|row| row.key == *key).cloned()).collect())
 }
@@ -175,13 +190,15 @@ impl From<&Row> for Record {
 }
 
 impl Record {
-    /// `None` for a row without status, or one that was solved and says not how well.
+    /// `None` for a row without status, or one that was solved and says not how well, or with numbers that no run has.
     fn row(self) -> Option<Row> {
         let Self { degree, elements, interpolation, increments, time_step, tolerance, .. } = self;
         let errors = self.position_error.zip(self.rotation_error);
         let errors = errors.map(|(position, rotation)| Errors { position, rotation });
+        let possible = |number: f64| number.is_finite() && number >= 0.0;
         let complete = if self.status == SOLVED {
-            errors.is_some() && self.seconds.is_some()
+            let errors = errors.is_some_and(|errors| possible(errors.position) && possible(errors.rotation));
+            errors && self.seconds.is_some_and(possible)
         } else {
             !self.status.is_empty()
         };

@@ -19,8 +19,8 @@ const INCREMENTS: [usize; 3] = [1, 5, 20];
 const STEPS: [f64; 4] = [2.0, 1.0, 0.5, 0.25];
 /// The same where there is nothing but bodies.
 const STEPS_OF_BODIES: [f64; 6] = [4.0, 2.0, 1.0, 0.5, 0.25, 0.125];
-/// The time step of a scene without a constant one, as a part of the end time.
-const STEP: f64 = 1.0 / 400.0;
+/// The time step beside the accuracy of a scene without a constant one, as a part of the end time.
+pub(super) const STEP: f64 = 1.0 / 400.0;
 
 /// The settings to try, without repetitions, before time steps are fitted to the milestones: every combination of
 /// what `[study]` lists, or a selection about the scene's own settings.
@@ -30,8 +30,9 @@ pub(super) fn ladder(scene: &Scene, admissible: &[usize], equal_increments: usiz
     let all = match scene.analysis() {
         _ if lists != Study::default() => product(scene, admissible, &study),
         Some(Analysis::Dynamics(options)) => {
+            let itself = time_step(options).is_none().then(Settings::default);
             let own = time_step(options).unwrap_or(STEP * options.end_time);
-            in_time(scene, admissible, own)
+            itself.into_iter().chain(in_time(scene, admissible, own)).collect()
         }
         _ => on_path(scene, admissible, equal_increments),
     };
@@ -68,9 +69,9 @@ fn product(scene: &Scene, admissible: &[usize], study: &Study) -> Vec<Settings> 
     all
 }
 
-/// The combinations of what is no matter of the mesh; a motion always has a constant step.
+/// The combinations of what is no matter of the mesh; a constant step is named, to be fitted to the milestones.
 fn of_solver(scene: &Scene, study: &Study, mesh: &Settings) -> Vec<Settings> {
-    let own = scene.dynamics.as_ref().map(|options| time_step(options).unwrap_or(STEP * options.end_time));
+    let own = scene.dynamics.as_ref().and_then(time_step);
     let mut all = Vec::new();
     for increments in choices(&study.increments) {
         for time_step in choices(&study.time_step) {

@@ -3,7 +3,7 @@
 use crate::error::SceneError;
 use crate::scene::{Analysis, Increments, Scene};
 use crate::solution::Statistics;
-use crate::study::ladder::ladder;
+use crate::study::ladder::{STEP, ladder};
 use crate::study::mesh::admissible_elements;
 use crate::study::milestones::no_path;
 use crate::study::reference::{Finest, Reference, find_reference, with_probes};
@@ -65,7 +65,10 @@ impl Plan {
                 runs.push((settings, key));
             }
         }
-        let finest = finest(&scene, &runs);
+        let mut finest = finest(&scene, &runs);
+        if let (Some(options), None) = (&scene.dynamics, finest.time_step) {
+            finest.time_step = Some(milestones.step(STEP * options.end_time));
+        }
         let accuracies = match (study.accuracies, &scene.dynamics) {
             (Some(accuracies), _) => accuracies,
             (None, Some(_)) => ACCURACIES_IN_TIME.to_vec(),
@@ -123,19 +126,25 @@ impl Plan {
                     status: SOLVED.to_owned(),
                 }
             }
-            Err(stop) => Row {
-                key: key.clone(),
-                errors: None,
-                seconds: None,
-                newton_iterations: None,
-                factorizations: None,
-                status: stop.to_string(),
-            },
+            Err(stop) => {
+                let spent = match &stop {
+                    Stop::Solver(failure) => Some(&failure.partial.statistics),
+                    Stop::Setup(_) => None,
+                };
+                Row {
+                    key: key.clone(),
+                    errors: None,
+                    seconds: None,
+                    newton_iterations: spent.map(|work| work.newton_iterations),
+                    factorizations: spent.map(|work| work.factorizations),
+                    status: stop.to_string(),
+                }
+            }
         }
     }
 
     /// The run through the milestones, and work and processor time of a plain one. They are the same run, unless
-    /// automatic increments go out of their way to the milestones, or it is so short that it is repeated.
+    /// automatic increments or steps go out of their way to the milestones, or it is so short that it is repeated.
     fn measured(
         &self,
         settings: &Settings,
@@ -143,7 +152,11 @@ impl Plan {
     ) -> Result<(Trial, Statistics, f64), Stop> {
         let variant = settings.apply(&self.scene).map_err(|error| Stop::Setup(error.into()))?;
         let trial = solve(&variant, &self.milestones, progress)?;
-        let automatic = variant.statics.as_ref().is_some_and(|options| options.increments.is_none());
+        let automatic = match variant.analysis() {
+            Some(Analysis::Dynamics(options)) => options.time_step().is_none(),
+            Some(Analysis::Statics(options)) => options.increments.is_none(),
+            Some(Analysis::Modes(_)) | None => false,
+        };
         let (statistics, seconds) = if automatic || trial.seconds < SHORT {
             time(&variant, &mut |_, _| ())?
         } else {
@@ -230,6 +243,21 @@ between = ["ground", "rod@0.5"]
         assert_eq!(steps, [0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125]);
         assert!(plan.keys().all(|key| key.elements.is_none() && key.degree.is_none()));
         assert_eq!(plan.scene().probe.len(), 1);
+    }
+
+    /// A motion whose steps follow an accuracy is tried as it is, and with constant steps; lists of other things leave
+    /// it its accuracy. The reference has constant steps, whatever is tried.
+    #[test]
+    fn steps_may_follow_an_accuracy() {
+        let motion = "[dynamics]\nend_time = 1.0\naccuracy = 1e-3\n";
+        let (scene, selected) = plan(&format!("{ROD}{motion}"));
+        let steps: Vec<_> = selected.keys().map(|key| key.time_step).collect();
+        assert_eq!(selected.keys().next(), Some(&Key::of(&scene)));
+        assert_eq!(steps.iter().filter(|step| step.is_none()).count(), 1);
+        assert!(steps.contains(&Some(2.5e-3)), "{steps:?}");
+        let (_, listed) = plan(&format!("{ROD}{motion}[study]\ndegree = [1, 2]\n"));
+        assert!(listed.keys().len() == 2 && listed.keys().all(|key| key.time_step.is_none()));
+        assert_eq!((listed.finest.time_step, listed.milestones().count()), (Some(2.5e-3), 100));
     }
 
     /// A list replaces the selection; steps that do not divide the end time are moved to the nearest that do.

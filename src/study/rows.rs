@@ -22,7 +22,7 @@ pub struct Key {
     pub interpolation: Option<InterpolationKind>,
     /// The equal load increments; absent: automatic.
     pub increments: Option<usize>,
-    /// The constant time step [s].
+    /// The constant time step [s]; absent in dynamics: the scene's accuracy.
     pub time_step: Option<f64>,
     /// The absolute max-norm of the residual; absent: the unit-free test.
     pub tolerance: Option<f64>,
@@ -55,9 +55,10 @@ pub struct Row {
     pub errors: Option<Errors>,
     /// Processor time of the solve [s]; absent where it failed.
     pub seconds: Option<f64>,
-    /// Newton iterations, those of rejected increments included; absent where it failed.
+    /// Newton iterations, those of rejected increments included, and of a run that failed those until then; absent
+    /// where nothing was begun.
     pub newton_iterations: Option<usize>,
-    /// Factorisations of the tangent; absent where it failed.
+    /// Factorisations of the tangent, counted alike.
     pub factorizations: Option<usize>,
     /// [`SOLVED`], or why it failed.
     pub status: String,

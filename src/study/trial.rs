@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::error::Error;
 use crate::model::Model;
 use crate::scene::{Analysis, Scene, Statics, Step};
-use crate::solution::{Solution, SolveError, SolveFailure, Statistics};
+use crate::solution::{Solution, SolveFailure, Statistics};
 use crate::study::milestones::no_path;
 use crate::study::{Milestones, Trajectory};
 use crate::{dynamics, statics};
@@ -37,9 +37,9 @@ pub enum Stop {
     /// The variant is no scene that can be solved.
     #[error(transparent)]
     Setup(#[from] Error),
-    /// The solver stopped early.
+    /// The solver stopped early; with what it had done until then.
     #[error(transparent)]
-    Solver(#[from] SolveError),
+    Solver(#[from] Box<SolveFailure>),
 }
 
 /// Solves a variant of a scene through the milestones; `progress` hears of every increment or step, as
@@ -88,7 +88,7 @@ fn run(
     milestones: &[f64],
     progress: &mut dyn FnMut(f64, &Statistics),
 ) -> Result<Solution, Stop> {
-    let solved = match scene.analysis() {
+    Ok(match scene.analysis() {
         Some(Analysis::Statics(options)) => statics::solve_through(model, options, milestones, progress),
         // A constant step divides the intervals between milestones.
         Some(Analysis::Dynamics(options)) => match options.step {
@@ -97,9 +97,5 @@ fn run(
         },
         Some(Analysis::Modes(_)) => return Err(Stop::Setup(Error::Scene(no_path()))),
         None => statics::solve_through(model, &Statics::default(), milestones, progress),
-    };
-    solved.map_err(|failure| {
-        let SolveFailure { error, .. } = *failure;
-        Stop::Solver(error)
-    })
+    }?)
 }

@@ -57,6 +57,7 @@ fn number(row: &[String], column: usize) -> f64 {
 const POSITION: usize = 6;
 const ROTATION: usize = 7;
 const SECONDS: usize = 8;
+const COUNTS: usize = 9;
 const STATUS: usize = 11;
 
 /// Without what a clock says.
@@ -135,6 +136,28 @@ fn an_interrupted_study_goes_on() {
     assert_eq!(timeless(&rows(out)), timeless(&whole));
 }
 
+/// What no run has written is done again.
+#[test]
+fn a_broken_table_is_made_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let scene = format!("{ARC}{STATICS}");
+    assert_eq!(study(&scene, out, &[]).code, Some(0));
+    let whole = rows(out);
+    let table = read(out, "study.csv");
+    let error = whole[1][POSITION].as_str();
+    for (wrong, kept) in [("NaN", 2), ("-1e-3", 2), ("inf", 2), ("one", 2), (error, 3)] {
+        std::fs::write(out.join("study.csv"), table.replace(error, wrong)).unwrap();
+        let ended = study(&scene, out, &[]);
+        assert!(ended.stdout.starts_with(&format!("{kept} of 3 runs")), "{wrong}: {}", ended.stdout);
+        assert_eq!(timeless(&rows(out)), timeless(&whole), "{wrong}");
+    }
+    // A line of bytes that are no text costs no more than itself.
+    let bytes = [table.as_bytes(), b"\xff\xfe\n"].concat();
+    std::fs::write(out.join("study.csv"), bytes).unwrap();
+    assert!(study(&scene, out, &[]).stdout.starts_with("3 of 3 runs"));
+}
+
 #[test]
 fn a_study_of_something_else_is_not_mixed_in() {
     let folder = tempfile::tempdir().unwrap();
@@ -192,6 +215,9 @@ fn what_does_not_converge_is_a_row() {
     let rows = rows(folder.path());
     assert_eq!((rows[0][3].as_str(), rows[1][3].as_str()), ("10", ""));
     assert!(rows[0][STATUS].starts_with("no equilibrium found at load factor"), "{}", rows[0][STATUS]);
+    assert!(rows[0][POSITION..COUNTS].iter().all(String::is_empty), "{:?}", rows[0]);
+    // What it cost is known all the same: an iteration has one factorisation.
+    assert!(number(&rows[0], COUNTS) > 0.0 && rows[0][COUNTS] == rows[0][COUNTS + 1], "{:?}", rows[0]);
     assert_eq!(rows[1][STATUS], "solved");
 }
 

@@ -196,10 +196,11 @@ fn labels(
         front.iter().any(|&index| of(&rows[index].key) != of(&rows[front[0]].key))
     };
     let steps = several(&|key| key.time_step.map(|step| format!("{step:?}")));
+    let tolerances = several(&|key| key.tolerance.map(|tolerance| format!("{tolerance:?}")));
     let mut taken: Vec<[f64; 4]> = Vec::new();
     for &index in front {
         let Some(place) = at(index) else { continue };
-        let text = label(&rows[index].key, steps);
+        let text = label(&rows[index].key, steps, tolerances);
         let width = text_width(&text, SMALL);
         let right = (place[0] - 6.0).max(frame.area.left + 4.0 + width);
         let mut y = place[1] + 10.0;
@@ -225,16 +226,21 @@ fn labels(
 }
 
 /// Degree and elements, and the time step where it makes a difference.
-fn label(key: &Key, with_step: bool) -> String {
+fn label(key: &Key, with_step: bool, with_tolerance: bool) -> String {
     let kind = match (key.interpolation, key.degree) {
         (Some(InterpolationKind::Se3), _) => "SE(3)".to_owned(),
         (_, Some(degree)) => format!("p {degree}"),
         (_, None) => "own p".to_owned(),
     };
     let mesh = key.elements.map(|elements| format!("{kind} × {elements}"));
-    let step = key.time_step.filter(|_| with_step || mesh.is_none()).map(|step| format!("h {}", short(step)));
+    // Steps that follow an accuracy are none of the others.
+    let step = key.time_step.map_or("accuracy".to_owned(), |step| format!("h {}", short(step)));
+    let step = (with_step || mesh.is_none()).then_some(step);
     let increments = key.increments.map(|count| format!("{count} incr."));
-    mesh.into_iter().chain(step).chain(increments).collect::<Vec<_>>().join(", ")
+    let tolerance =
+        key.tolerance.map_or("tol. default".to_owned(), |tolerance| format!("tol. {tolerance:e}"));
+    let tolerance = with_tolerance.then_some(tolerance);
+    mesh.into_iter().chain(step).chain(increments).chain(tolerance).collect::<Vec<_>>().join(", ")
 }
 
 fn short(number: f64) -> String {
@@ -266,6 +272,15 @@ mod tests {
             assert!(document.contains(wanted), "{wanted}");
         }
         assert!(!document.contains("p 1 × 99") && !document.contains("NaN"));
+    }
+
+    /// Only what differs along the front.
+    #[test]
+    fn runs_that_differ_have_different_names() {
+        let of = |time_step, tolerance| Key { time_step, tolerance, ..row(2, 10, 1.0, 1.0).key };
+        assert_eq!(label(&of(Some(0.25), Some(1e-8)), false, false), "p 2 × 10");
+        assert_eq!(label(&of(Some(0.25), Some(1e-8)), true, true), "p 2 × 10, h 0.25, tol. 1e-8");
+        assert_eq!(label(&of(None, None), true, true), "p 2 × 10, accuracy, tol. default");
     }
 
     #[test]

@@ -10,6 +10,7 @@ const MOST_RUNS: usize = 1000;
 pub(super) fn study(scene: &Scene) -> Check {
     let Some(study) = &scene.study else { return Ok(()) };
     beside_its_analysis(scene, study)?;
+    of_rods(scene, study)?;
     let runs = [
         entries("degree", &study.degree, |key, degree| match degree {
             1..=8 => Ok(()),
@@ -57,6 +58,21 @@ fn beside_its_analysis(scene: &Scene, study: &Study) -> Check {
             beside("increments", "dynamics", "statics")
         }
         Some(Analysis::Statics(_)) if study.time_step.is_some() => beside("time_step", "statics", "dynamics"),
+        _ => Ok(()),
+    }
+}
+
+/// Without rods there is nothing to mesh.
+fn of_rods(scene: &Scene, study: &Study) -> Check {
+    let lists = [
+        ("degree", study.degree.is_some()),
+        ("elements", study.elements.is_some()),
+        ("interpolation", study.interpolation.is_some()),
+    ];
+    match lists.into_iter().find(|(_, given)| *given) {
+        Some((name, _)) if scene.rod.is_empty() => {
+            fail(format!("study.{name}"), "is given, but the scene has no rod", "it only beside `[[rod]]`")
+        }
         _ => Ok(()),
     }
 }
